@@ -44,12 +44,7 @@ _TABLEAU = {
     "blue": "#1f77b4", "orange": "#ff7f0e", "green": "#2ca02c", "red": "#d62728", "purple": "#9467bd",
     "brown": "#8c564b", "pink": "#e377c2", "gray": "#7f7f7f", "grey": "#7f7f7f", "olive": "#bcbd22", "cyan": "#17becf",
 }  # fmt: skip
-NAMES = (
-    *_LETTERS.split(),
-    *_CSS.split(),
-    *(f"tab:{name}" for name in _TABLEAU),
-    "none",
-)
+NAMES = (*_LETTERS.split(), *_CSS.split(), *(f"tab:{name}" for name in _TABLEAU), "none")
 _KNOWN = frozenset(NAMES)
 _HEX = r"#(?:[0-9a-fA-F]{3,4}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})"
 _CYCLE_NAME = r"C[0-9]+"

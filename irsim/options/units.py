@@ -84,9 +84,6 @@ def _clip(angle: float) -> float:
 
 
 SpanAngle = Annotated[
-    Radians,
-    Field(ge=0),
-    AfterValidator(_clip),
-    Field(json_schema_extra={"maximum": round(FULL_TURN + _ROUNDING, 4)}),
+    Radians, Field(ge=0), AfterValidator(_clip), Field(json_schema_extra={"maximum": round(FULL_TURN + _ROUNDING, 4)})
 ]
 """An opening angle from 0 to a full turn."""

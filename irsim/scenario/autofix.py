@@ -49,12 +49,7 @@ class RepairedText:
 
 
 def repair_text(
-    text: str,
-    *,
-    name: str | None = None,
-    path: str | None = None,
-    strict: bool = True,
-    limits: Limits = DEFAULT_LIMITS,
+    text: str, *, name: str | None = None, path: str | None = None, strict: bool = True, limits: Limits = DEFAULT_LIMITS
 ) -> RepairedText:
     """Repair what can be repaired without guessing; hints are not repaired.
 

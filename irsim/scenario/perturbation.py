@@ -157,9 +157,7 @@ def perturbed(
     if wanted and all(record.spreads is None for record in objects):
         why = "the chosen objects have no drive, never move, or are placed at random"
         raise InputError(
-            f"there is nothing to perturb in {name!r}: {why}",
-            "choose other spreads or objects",
-            "perturb",
+            f"there is nothing to perturb in {name!r}: {why}", "choose other spreads or objects", "perturb"
         )
     return replace(scenario, objects=objects)
 

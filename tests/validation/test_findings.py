@@ -182,11 +182,7 @@ def test_a_generated_map_has_another_fix() -> None:
 
 
 @pytest.mark.parametrize(
-    ("obstacle", "words"),
-    [
-        (disc(1, 10.3, 5), "inside 'obstacle_1'"),
-        (box(0.1, 2, 10.2, 5), "closer than"),
-    ],
+    ("obstacle", "words"), [(disc(1, 10.3, 5), "inside 'obstacle_1'"), (box(0.1, 2, 10.2, 5), "closer than")]
 )
 def test_goals_without_room(obstacle: dict[str, Any], words: str) -> None:
     data = scenario(ROBOT, obstacle)

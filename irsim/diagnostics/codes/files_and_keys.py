@@ -22,8 +22,7 @@ FILE_AND_YAML: dict[str, Code] = {
         " or a bundled one. Without it the shape is drawn. Addresses such as http: are not fetched.",
     ),
     "unreadable": Code(
-        "file cannot be read",
-        "The system refuses to read the file. Check the permissions and the path.",
+        "file cannot be read", "The system refuses to read the file. Check the permissions and the path."
     ),
     "not-text": Code("not a text file", "The file holds bytes that are not UTF-8 text. Save the scenario as UTF-8."),
     "file-too-large": Code(
@@ -43,10 +42,7 @@ FILE_AND_YAML: dict[str, Code] = {
         "The text breaks the grammar of YAML at this place. The cause is often a line earlier: a missing ':', an "
         "unclosed bracket or quote, a tab, or uneven indentation.",
     ),
-    "empty-document": Code(
-        "nothing in the file",
-        "The file has only blanks or comments. A scenario is a mapping.",
-    ),
+    "empty-document": Code("nothing in the file", "The file has only blanks or comments. A scenario is a mapping."),
     "multiple-documents": Code(
         "more than one YAML document", "A line '---' starts a second document. One file holds one scenario."
     ),
@@ -56,12 +52,10 @@ FILE_AND_YAML: dict[str, Code] = {
         " a task or a suite. A scenario is a mapping with the keys world, robot, obstacle, gui, bridges, custom.",
     ),
     "duplicate-key": Code(
-        "key given twice",
-        "A mapping has the same key twice. YAML keeps the last value; remove one of them.",
+        "key given twice", "A mapping has the same key twice. YAML keeps the last value; remove one of them."
     ),
     "bad-key": Code(
-        "not usable as a key",
-        "Keys must be words. Lists and mappings cannot be keys; '<<' merges mappings.",
+        "not usable as a key", "Keys must be words. Lists and mappings cannot be keys; '<<' merges mappings."
     ),
     "unsupported-tag": Code(
         "YAML tag not supported",
@@ -70,17 +64,13 @@ FILE_AND_YAML: dict[str, Code] = {
         "sense alone.",
     ),
     "recursive-alias": Code(
-        "alias inside its own anchor",
-        "The value would contain itself endlessly. Write it out instead.",
+        "alias inside its own anchor", "The value would contain itself endlessly. Write it out instead."
     ),
     "alias-expansion": Code(
         "aliases expand to too much",
         "Aliases (*name) and merge keys (<<) repeat so much that the scenario would not fit into memory.",
     ),
-    "too-many-events": Code(
-        "too many values",
-        "The file has more values and brackets than the limit of 2 million.",
-    ),
+    "too-many-events": Code("too many values", "The file has more values and brackets than the limit of 2 million."),
     "too-deep": Code("nested too deeply", "Lists and mappings are nested more than 64 levels deep."),
     "yaml-number-text": Code(
         "number that YAML 1.1 reads as text",
@@ -109,14 +99,8 @@ KEYS_AND_VALUES: dict[str, Code] = {
         "The key is not part of the language at this place; 'allowed' lists the known keys. IR-SIM 2.12 ignores most "
         "unknown keys: irsim.make and irsim run do so too, with a warning; strict reading refuses them.",
     ),
-    "missing-key": Code(
-        "key missing",
-        "This mapping needs the key, which has no default.",
-    ),
-    "conflicting-keys": Code(
-        "keys exclude each other",
-        "Two keys set the same thing in different ways. Keep one.",
-    ),
+    "missing-key": Code("key missing", "This mapping needs the key, which has no default."),
+    "conflicting-keys": Code("keys exclude each other", "Two keys set the same thing in different ways. Keep one."),
     "ignored-key": Code("key without effect", "Another key of the same entry makes this one meaningless."),
     "wrong-type": Code(
         "value of the wrong kind",
@@ -134,30 +118,18 @@ KEYS_AND_VALUES: dict[str, Code] = {
         " the cause is one level of brackets too many.",
     ),
     "not-a-mapping": Code(
-        "mapping expected",
-        "A feature is a mapping with a name: 'kinematics: {name: diff}', not 'kinematics: diff'.",
+        "mapping expected", "A feature is a mapping with a name: 'kinematics: {name: diff}', not 'kinematics: diff'."
     ),
-    "unknown-value": Code(
-        "unknown word",
-        "The key takes one of a fixed set of words; 'allowed' lists them.",
-    ),
-    "invalid-value": Code(
-        "invalid value",
-        "The value is not valid for this key; the message says why.",
-    ),
+    "unknown-value": Code("unknown word", "The key takes one of a fixed set of words; 'allowed' lists them."),
+    "invalid-value": Code("invalid value", "The value is not valid for this key; the message says why."),
     "out-of-range": Code(
-        "number out of range",
-        "The number is outside the bounds of this key, which are in 'allowed'.",
+        "number out of range", "The number is outside the bounds of this key, which are in 'allowed'."
     ),
     "range-order": Code(
-        "bounds in the wrong order",
-        "The lower bound of a range must not be greater than the upper bound.",
+        "bounds in the wrong order", "The lower bound of a range must not be greater than the upper bound."
     ),
     "infinite-number": Code("infinity not allowed", "Only acce, mass and inertia may be infinite (.inf)."),
-    "not-a-number": Code(
-        "NaN not allowed",
-        "NaN (not a number) has no meaning in a scenario. Give a number.",
-    ),
+    "not-a-number": Code("NaN not allowed", "NaN (not a number) has no meaning in a scenario. Give a number."),
     "angle-over-full-turn": Code(
         "angle larger than a full turn",
         "Opening angles must be from 0 to 2π = 6.28318 radians. A value such as 90, 180 or 360 is probably in degrees.",
@@ -189,8 +161,7 @@ KEYS_AND_VALUES: dict[str, Code] = {
         "This behavior is registered, but not for the kinematics of this object. Register it for these kinematics too.",
     ),
     "not-a-group-behavior": Code(
-        "not a group behavior",
-        "This behavior decides for each object separately: write it under 'behavior'.",
+        "not a group behavior", "This behavior decides for each object separately: write it under 'behavior'."
     ),
     "bad-social-group": Code(
         "social group with missing or repeated members",
@@ -231,22 +202,14 @@ MAPS_AND_LIMITS: dict[str, Code] = {
     "map-empty": Code(
         "map without walls", "No cell is occupied, so there is no map object. Black is occupied, white is free."
     ),
-    "map-full": Code(
-        "map without free space",
-        "Every cell is occupied. Black is occupied, white is free.",
-    ),
+    "map-full": Code("map without free space", "Every cell is occupied. Black is occupied, white is free."),
     "map-values": Code(
-        "not an occupancy grid",
-        "A map given as an array must have the shape (nx, ny) and numbers from 0 to 100.",
+        "not an occupancy grid", "A map given as an array must have the shape (nx, ny) and numbers from 0 to 100."
     ),
     "map-generator": Code(
-        "map generator failed",
-        "The Python class registered under this name raised an exception, or returned no grid.",
+        "map generator failed", "The Python class registered under this name raised an exception, or returned no grid."
     ),
-    "no-map": Code(
-        "no map",
-        "The scenario has no 'world.obstacle_map', so no map can be exported.",
-    ),
+    "no-map": Code("no map", "The scenario has no 'world.obstacle_map', so no map can be exported."),
     "map-stand-in": Code(
         "another map is used",
         "The indoor scans of IR-SIM may not be redistributed; maps of flats made for irsim replace them "
@@ -298,9 +261,6 @@ MAPS_AND_LIMITS: dict[str, Code] = {
         "Benchmarks, training and pictures do not open the bridges of a scenario: robots that another program moves or "
         "commands in irsim run follow their own behavior here. Compare such numbers with care, or use irsim run.",
     ),
-    "too-many-problems": Code(
-        "more problems than are shown",
-        "Fix the first problems and validate again.",
-    ),
+    "too-many-problems": Code("more problems than are shown", "Fix the first problems and validate again."),
 }
 """Codes of maps, and of what exceeds the engine."""

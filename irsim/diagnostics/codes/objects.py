@@ -11,10 +11,7 @@ OBJECTS: dict[str, Code] = {
         "name used twice",
         "Names must be unique. With 'number' give a list of names, one each (the last one is repeated), or no name.",
     ),
-    "role-mismatch": Code(
-        "role does not fit the section",
-        "Robots belong under 'robot', obstacles under 'obstacle'.",
-    ),
+    "role-mismatch": Code("role does not fit the section", "Robots belong under 'robot', obstacles under 'obstacle'."),
     "too-many-objects": Code(
         "too many objects",
         "A scenario may have 100,000 objects (servers may allow less). A program that reads the scenario can raise "
@@ -22,18 +19,14 @@ OBJECTS: dict[str, Code] = {
     ),
     "limits-order": Code("lower limit above upper limit", "vel_min must not exceed vel_max in any component."),
     "angle-range": Code(
-        "heading interval is not one turn wide",
-        "angle_range must be [low, low + 2π]; the default is [-π, π].",
+        "heading interval is not one turn wide", "angle_range must be [low, low + 2π]; the default is [-π, π]."
     ),
     "invalid-polygon": Code(
         "polygon crosses itself",
         "The corners must go around the polygon once. irsim.make uses the area that the outline encloses, with a "
         "warning.",
     ),
-    "too-few-vertices": Code(
-        "too few vertices",
-        "A polygon needs at least 3 corners, a linestring at least 2 points.",
-    ),
+    "too-few-vertices": Code("too few vertices", "A polygon needs at least 3 corners, a linestring at least 2 points."),
     "goal-levels": Code(
         "list of goals means one goal per object",
         "'goal: [[1, 1], [5, 5]]' gives object 0 the first goal and object 1 the second. Write waypoints as "
@@ -54,8 +47,7 @@ OBJECTS: dict[str, Code] = {
         "(1, 1); write 'state: [0, 0, 0]' for vertices in world coordinates.",
     ),
     "default-goal": Code(
-        "no goal given",
-        "Every object has a goal. The default is [1, 9, 0], whatever the size of the world.",
+        "no goal given", "Every object has a goal. The default is [1, 9, 0], whatever the size of the world."
     ),
     "driven-without-goal": Code(
         "robot of a bridge without a goal",
@@ -90,8 +82,7 @@ OBJECTS: dict[str, Code] = {
         "step_time: 100 for 100 ms; write step_time: 0.1.",
     ),
     "default-shape": Code(
-        "no shape given",
-        "The default is a circle of radius 1 m, while {name: circle} has a radius of 0.2 m.",
+        "no shape given", "The default is a circle of radius 1 m, while {name: circle} has a radius of 0.2 m."
     ),
     "default-vertices": Code("polygon without vertices", "The default is a square of 2 m around the position."),
     "stacked": Code(
@@ -293,13 +284,9 @@ OBJECTS: dict[str, Code] = {
         "robot, or obstacle with a goal, without behavior",
         "The object stays in place unless the program passes actions to step() or uses the keyboard.",
     ),
-    "wander-and-loop": Code(
-        "wander and loop together",
-        "wander draws new goals, so loop has no effect.",
-    ),
+    "wander-and-loop": Code("wander and loop together", "wander draws new goals, so loop has no effect."),
     "wander-outside": Code(
-        "random goals outside the world",
-        "Without range_low and range_high, goals are drawn within the world.",
+        "random goals outside the world", "Without range_low and range_high, goals are drawn within the world."
     ),
     "rvo-acce": Code(
         "rvo's acce is not per second",
@@ -329,8 +316,7 @@ OBJECTS: dict[str, Code] = {
     ),
     "wheelbase-default": Code("no wheelbase given", "Ackermann steering without a wheelbase uses 1 m."),
     "omni-noise": Code(
-        "noise at standstill",
-        "The noise of omni drives does not depend on speed, so a robot at rest trembles.",
+        "noise at standstill", "The noise of omni drives does not depend on speed, so a robot at rest trembles."
     ),
     "group-drives-obstacle": Code(
         "group behavior drives an obstacle",
@@ -338,8 +324,7 @@ OBJECTS: dict[str, Code] = {
         "it as a list, or give it its own 'group'.",
     ),
     "group-behavior-unused": Code(
-        "group behavior without effect",
-        "The first member of a group (lowest id) determines its group behavior.",
+        "group behavior without effect", "The first member of a group (lowest id) determines its group behavior."
     ),
     "lidar-ends-meet": Code(
         "first and last beam have the same direction",
@@ -348,8 +333,7 @@ OBJECTS: dict[str, Code] = {
         "set endpoint: false.",
     ),
     "lidar-beams": Code(
-        "beams that do not spread",
-        "A single beam points straight ahead, and an angle_range of 0 makes all beams one.",
+        "beams that do not spread", "A single beam points straight ahead, and an angle_range of 0 makes all beams one."
     ),
     "lidar-blind": Code(
         "beams end inside the robot",
@@ -361,24 +345,15 @@ OBJECTS: dict[str, Code] = {
         "std and angle_std have an effect only with 'noise: true' (velocity_noise_std always has).",
     ),
     "fog-never-lifts": Code(
-        "no robot can see",
-        "Robots clear the fog with a lidar, or with 'fov' and 'fov_radius'. Obstacles do not.",
+        "no robot can see", "Robots clear the fog with a lidar, or with 'fov' and 'fov_radius'. Obstacles do not."
     ),
     "fog-too-fine": Code(
-        "too many cells of fog",
-        "A fog map may have 16 million cells: the extent of the world over the cell size.",
+        "too many cells of fog", "A fog map may have 16 million cells: the extent of the world over the cell size."
     ),
-    "fov-radius-ignored": Code(
-        "fov_radius without fov",
-        "The radius has an effect only together with 'fov'.",
-    ),
-    "fov-without-radius": Code(
-        "fov without fov_radius",
-        "A field of view needs a range: add 'fov_radius' or a lidar.",
-    ),
+    "fov-radius-ignored": Code("fov_radius without fov", "The radius has an effect only together with 'fov'."),
+    "fov-without-radius": Code("fov without fov_radius", "A field of view needs a range: add 'fov_radius' or a lidar."),
     "contact-without-mode": Code(
-        "contact sensor without contacts",
-        "Contact forces exist only in 'collision_mode: contact'.",
+        "contact sensor without contacts", "Contact forces exist only in 'collision_mode: contact'."
     ),
     "sample-time": Code(
         "sample_time is not a multiple of step_time", "Frames are drawn every int(sample_time / step_time) steps."

@@ -8,33 +8,24 @@ __all__ = ["BRIDGES", "TOOLS"]
 
 
 TOOLS: dict[str, Code] = {
-    "unknown-template": Code(
-        "unknown template",
-        "No bundled template has that name; irsim templates lists them.",
-    ),
+    "unknown-template": Code("unknown template", "No bundled template has that name; irsim templates lists them."),
     "unknown-parameter": Code(
         "unknown parameter", "The template has no parameter of that name; irsim describe NAME lists them."
     ),
     "bad-parameter": Code(
-        "parameter not accepted",
-        "The value has the wrong type or is out of range; the message says what is accepted.",
+        "parameter not accepted", "The value has the wrong type or is out of range; the message says what is accepted."
     ),
     "unknown-skill": Code(
-        "unknown skill",
-        "This package has no agent skill of that name; irsim skills list shows them.",
+        "unknown skill", "This package has no agent skill of that name; irsim skills list shows them."
     ),
     "unknown-topic": Code(
         "unknown topic",
         "The language has no key or component of that name, and no template, metric, guide or code has it.",
     ),
     "unknown-format": Code(
-        "unknown file format",
-        "The suffix of the file selects the format; the message lists the known suffixes.",
+        "unknown file format", "The suffix of the file selects the format; the message lists the known suffixes."
     ),
-    "file-exists": Code(
-        "file exists",
-        "An existing file is overwritten only with --force.",
-    ),
+    "file-exists": Code("file exists", "An existing file is overwritten only with --force."),
     "import-failed": Code(
         "module cannot be imported", "A module named by --import raised an error; the message has it."
     ),
@@ -76,17 +67,13 @@ TOOLS: dict[str, Code] = {
         "There is no policy of that name: no behavior, plug-in or file. The message names the nearest ones; irsim "
         "policies lists all.",
     ),
-    "invalid-input": Code(
-        "input not usable",
-        "The input is not usable; the message says what is wrong with it.",
-    ),
+    "invalid-input": Code("input not usable", "The input is not usable; the message says what is wrong with it."),
     "file-access": Code(
         "file cannot be read or written",
         "The system refuses access. Check the path, the permissions and the free disk space.",
     ),
     "out-of-memory": Code(
-        "not enough memory",
-        "The work needs more memory than there is. Use fewer objects, beams or frames.",
+        "not enough memory", "The work needs more memory than there is. Use fewer objects, beams or frames."
     ),
     "unknown-run": Code(
         "unknown run",
@@ -98,8 +85,7 @@ TOOLS: dict[str, Code] = {
         "The workspace has no job of that id. Jobs are deleted after 24 hours; the message names recent ones.",
     ),
     "unreadable-run": Code(
-        "run cannot be read",
-        "A file of the recorded run was changed, removed or truncated; record the run again.",
+        "run cannot be read", "A file of the recorded run was changed, removed or truncated; record the run again."
     ),
     "bad-task": Code(
         "task cannot be used",
@@ -135,14 +121,12 @@ TOOLS: dict[str, Code] = {
         "The machines of the cluster have another version of irsim, or lack a module; results would differ or fail.",
     ),
     "step-out-of-range": Code(
-        "step outside the run",
-        "The recorded run has no such step; the message has the range of its steps.",
+        "step outside the run", "The recorded run has no such step; the message has the range of its steps."
     ),
     "unknown-tool": Code("unknown tool", "The server has no tool of that name; the message names the nearest."),
     "unknown-prompt": Code("unknown prompt", "The server has no prompt of that name; the message lists those it has."),
     "unknown-argument": Code(
-        "unknown argument",
-        "The tool has no argument of that name; the message names the nearest one, or all of them.",
+        "unknown argument", "The tool has no argument of that name; the message names the nearest one, or all of them."
     ),
     "bad-argument": Code(
         "argument not accepted",
@@ -154,8 +138,7 @@ TOOLS: dict[str, Code] = {
         "with a fix for each.",
     ),
     "over-limit": Code(
-        "more work than is allowed",
-        "The message has the limit and what was requested. Use fewer steps or objects.",
+        "more work than is allowed", "The message has the limit and what was requested. Use fewer steps or objects."
     ),
     "out-of-time": Code(
         "computing time is over",
@@ -167,8 +150,7 @@ TOOLS: dict[str, Code] = {
         "The server is already working on as many calls as it allows. Call again a little later.",
     ),
     "worker-failed": Code(
-        "worker process died",
-        "The process that did the work ended without a result; the server itself continues.",
+        "worker process died", "The process that did the work ended without a result; the server itself continues."
     ),
     "internal-error": Code(
         "unexpected error",

@@ -210,13 +210,7 @@ def _check_density(placement: Placement, records: list[ObjectRecord]) -> Iterato
     )
     path = (*placement.path, "distribution")
     if count > most:
-        yield error(
-            "placement-impossible",
-            path,
-            f"{why}, but at most {most} can: {area}",
-            given=count,
-            fix=fix,
-        )
+        yield error("placement-impossible", path, f"{why}, but at most {most} can: {area}", given=count, fix=fix)
     elif density > _MAX_DENSITY:
         yield warning(
             "placement-tight",

@@ -12,13 +12,7 @@ from irsim.scenario.messages.findings import Finding, error, hint
 from irsim.scenario.resolve.expand import DEFAULT_RADIUS
 from irsim.scenario.yaml.formatting import flow
 
-_RANGES = (
-    "radius_range",
-    "avg_radius_range",
-    "irregularity_range",
-    "spikeyness_range",
-    "num_vertices_range",
-)
+_RANGES = ("radius_range", "avg_radius_range", "irregularity_range", "spikeyness_range", "num_vertices_range")
 
 
 def check(context: Context) -> Iterator[Finding]:

@@ -12,13 +12,7 @@ from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, warning
-from irsim.scenario.resolve.body_size import (
-    Point,
-    SizedBody,
-    SizedShape,
-    has_fixed_shape,
-    segment_gap,
-)
+from irsim.scenario.resolve.body_size import Point, SizedBody, SizedShape, has_fixed_shape, segment_gap
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _PASSABLE = ("unobstructed", "reactive")

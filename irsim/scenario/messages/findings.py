@@ -67,13 +67,7 @@ def warning(
 
 
 def hint(
-    code: str,
-    path: Path,
-    message: str,
-    *,
-    given: Any = None,
-    fix: str | None = None,
-    edit: Edit | None = None,
+    code: str, path: Path, message: str, *, given: Any = None, fix: str | None = None, edit: Edit | None = None
 ) -> Finding:
     """A finding that is worth knowing and may need no change."""
     return Finding(Diagnostic(code, "hint", path, message, given=given, fix=fix, edit=edit))

@@ -100,7 +100,7 @@ class Explainer:
             return self._pattern()
         message = self.message.removeprefix("Value error, ")
         allowed, fix = self.context.get("allowed"), self.context.get("fix")
-        return error("invalid-value", self.path, message, given=self.value, allowed=allowed, fix=fix)
+        return self._error("invalid-value", message, allowed=allowed, fix=fix)
 
     def _own(self) -> Finding:
         """An error of the language's own validators, which bring message, allowed values and fix."""
@@ -180,11 +180,9 @@ class Explainer:
     def _choice(self) -> Finding:
         allowed = literals(self.field) if self.field is not None else []
         near = nearest(self.value, allowed)
-        return error(
+        return self._error(
             "unknown-value",
-            self.path,
             f"{quote_value(self.value)} is not a valid value of '{self._key()}'",
-            given=self.value,
             allowed=allowed,
             fix=f"{self._key()}: {near}" if near else None,
             edit=Edit("replace", self.path, near, safe=is_slip_of(self.value, near)) if near else None,
@@ -196,11 +194,9 @@ class Explainer:
         key, pattern = self._key(), self.context.get("pattern")
         examples = [*(getattr(self.field, "examples", None) or ()), getattr(self.field, "default", None)]
         example = next((one for one in examples if isinstance(one, str) and re.search(str(pattern), one)), None)
-        return error(
+        return self._error(
             "invalid-value",
-            self.path,
             f"{quote_value(self.value)} is not a valid value of '{key}'",
-            given=self.value,
             allowed=f"what matches {pattern}",
             fix=None if example is None else f"something like '{key}: {example}'",
         )
@@ -213,11 +209,9 @@ class Explainer:
             if limit is not None:
                 limits[name] = f"{sign} {number(limit)}"
         allowed = " and ".join(limits.values()) + self._unit()
-        return error(
+        return self._error(
             "out-of-range",
-            self.path,
             f"{self._subject()} must be {allowed}, got {quote_value(self.value)}",
-            given=self.value,
             allowed=allowed,
             carry_on=self._carry_on(),
         )
@@ -225,12 +219,8 @@ class Explainer:
     def _not_finite(self) -> Finding:
         if isinstance(self.value, float) and math.isnan(self.value):
             return error("not-a-number", self.path, "NaN is not a number", allowed="a number" + self._unit())
-        return error(
-            "infinite-number",
-            self.path,
-            f"'{self._key()}' must be finite",
-            given=self.value,
-            allowed="a finite number" + self._unit(),
+        return self._error(
+            "infinite-number", f"'{self._key()}' must be finite", allowed="a finite number" + self._unit()
         )
 
     def _length(self) -> Finding:
@@ -243,11 +233,9 @@ class Explainer:
             message = f"{self._subject()} must have {elements}, got {count}"
             return error("wrong-length", self.path, message, allowed=elements)
         fix, edit = self._shorter(most)
-        return error(
+        return self._error(
             "wrong-length",
-            self.path,
             f"{self._subject()} must have {wanted} number{'s' if wanted != '1' else ''}, got {count}",
-            given=self.value,
             allowed=f"{wanted} numbers",
             fix=fix,
             edit=edit,
@@ -285,11 +273,9 @@ class Explainer:
         if self.kind == "bool_type" and isinstance(self.value, (list, tuple)):
             return self._list_for_boolean()
         fix, edit = self._repair(expected)
-        return error(
+        return self._error(
             "wrong-type",
-            self.path,
             f"{quote_value(self.value)} is not {expected}",
-            given=self.value,
             allowed=expected + (self._unit() if self.kind in _NUMBERS else ""),
             fix=fix,
             edit=edit,
@@ -336,11 +322,9 @@ class Explainer:
         # a plain 1e+308 would be text again
         text = repr(value) if value is None or "e" not in repr(value) else number(value)
         fix = None if value is None else f"write {text}{parsed.note}"
-        return error(
+        return self._error(
             code,
-            self.path,
             f"{str(self.value)[:60] if plain_float else quote_value(self.value)} is {why}",
-            given=self.value,
             allowed=expected + self._unit(),
             fix=fix or parsed.note or None,
             edit=Edit("replace", self.path, value) if value is not None else None,
@@ -352,14 +336,12 @@ class Explainer:
         else:
             message = f"'{self._key()}' must be {expected} for all objects of the entry, got a list"
             fix = "write one entry per value, each with its own 'number'"
-        return error("scalar-list", self.path, message, given=self.value, allowed=expected + self._unit(), fix=fix)
+        return self._error("scalar-list", message, allowed=expected + self._unit(), fix=fix)
 
     def _list_for_boolean(self) -> Finding:
-        return error(
+        return self._error(
             "scalar-list",
-            self.path,
             f"'{self._key()}' must be true or false for all objects of the entry; a list counts as true",
-            given=self.value,
             allowed="true or false",
             fix="write one entry per value, each with its own 'number'",
             carry_on=carry_on_type(self.kind, self.path, self.value),
@@ -367,16 +349,18 @@ class Explainer:
 
     def _boolean_as_text(self) -> Finding:
         written = self.document.source_text((*self.document.prefix, *self.path)) or str(self.value).lower()
-        return error(
+        return self._error(
             "yaml-boolean",
-            self.path,
             f"YAML 1.1 reads {written} as {str(self.value).lower()}, not as text",
-            given=self.value,
             allowed="text",
             fix=f"quote it: '{written}'",
             edit=Edit("replace", self.path, written),
             carry_on=carry_on_type(self.kind, self.path, written),
         )
+
+    def _error(self, code: str, message: str, **details: Any) -> Finding:
+        """An error about the value."""
+        return error(code, self.path, message, given=self.value, **details)
 
     def _carry_on(self) -> Edit | None:
         return carry_on_group(self.path, self.data) or carry_on_value(self.kind, self.path, self.value)

@@ -19,11 +19,7 @@ class Scalar(NamedTuple):
 
 
 _WORDS: dict[str, Any] = {"": None, "~": None}
-for _value, _words in (
-    (None, ("null",)),
-    (True, ("yes", "true", "on")),
-    (False, ("no", "false", "off")),
-):
+for _value, _words in ((None, ("null",)), (True, ("yes", "true", "on")), (False, ("no", "false", "off"))):
     for _word in _words:
         _WORDS.update({_word: _value, _word.capitalize(): _value, _word.upper(): _value})
 

@@ -32,11 +32,7 @@ _WRITTEN = {
 
 
 def changed_worlds(
-    a: ResolvedScenario,
-    b: ResolvedScenario,
-    pairs: Mapping[str, Pairs],
-    seed: int | None,
-    keys: Sequence[KeyChange],
+    a: ResolvedScenario, b: ResolvedScenario, pairs: Mapping[str, Pairs], seed: int | None, keys: Sequence[KeyChange]
 ) -> list[WorldChange]:
     """Compare the worlds built from two scenarios.
 
