@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.carla.actors import Role, cast, find_actor, place
-from irsim.bridges.carla.client import server_errors
+from irsim.bridges.carla.client import Town, server_errors
 from irsim.bridges.carla.lidars import AttachedLidar, attach_lidars
 from irsim.bridges.carla.places import (
     Places,
@@ -22,7 +22,6 @@ from irsim.bridges.carla.places import (
     vehicle_commands,
     walker_commands,
 )
-from irsim.bridges.carla.town import Town
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.common.arrays import Floats
 from irsim.components.bridges.carla import Carla

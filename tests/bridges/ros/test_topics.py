@@ -20,7 +20,7 @@ from irsim.bridges.ros.backends.base import Node
 from irsim.bridges.ros.backends.opening import open_backend
 from irsim.bridges.ros.bridge import RosBridge
 from irsim.bridges.ros.incoming import Inbox
-from irsim.bridges.ros.markers import body_markers
+from irsim.bridges.ros.outgoing import body_markers
 from irsim.bridges.ros.topics import TABLE, Qos, ros_names, scene_topics
 from irsim.common.extras import ExtraError
 from irsim.components.bridges._ros import TOPIC_KEYS, TOPIC_NAME

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.bridges.export.episode import Block, Episode
-from irsim.bridges.ros.markers import body_markers
 from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.outgoing import body_markers
 from irsim.bridges.ros.topics import nanoseconds, ros_names
 from irsim.common.arrays import Floats
 from irsim.objects.describe import describe_scene
