@@ -34,7 +34,6 @@ def maze(
     shape: str = "circle",
     follow: str = "planner: astar",
     goal: str = "goal: [9, 9, 0]",
-    more: str = "",
     world: str = "",
     walls: str = WALLS,
     top: Sequence[float] = (),
@@ -48,7 +47,7 @@ def maze(
         f"  - kinematics: {{name: {drive}{wheelbase}}}\n"
         f"    shape: {outline % wheelbase if '%s' in outline else outline}\n    state: [1, 1, 0]\n    {goal}\n"
         f"    vel_max: {limits}\n    vel_min: {[-v for v in limits]}\n"
-        f"    behavior: {{name: follow, {follow}}}\n{more}{f'obstacle:{walls}' if walls else ''}"
+        f"    behavior: {{name: follow, {follow}}}\n{f'obstacle:{walls}' if walls else ''}"
     )
 
 
@@ -69,12 +68,6 @@ def simulation(text: str, seed: int = 3) -> Simulation:
 @pytest.mark.parametrize("planner", ["jps", "{name: rrt, max_iter: 3000}", "{name: rrt_star, max_iter: 3000}", "prm"])
 def test_every_planner(planner: str) -> None:
     assert_success(maze(follow=f"planner: {planner}"), seed=1, steps=1500)
-
-
-@pytest.mark.parametrize("drive", ["diff", "omni", "omni_angular"])
-def test_slow_to_speed_up_and_brake(drive: str) -> None:
-    acce = f"    acce: {[0.5] * DRIVES[drive]}\n"
-    assert_success(maze(drive, more=acce), seed=1, steps=1500)
 
 
 @pytest.mark.parametrize(("width", "fits"), [(0.48, True), (0.39, False)])

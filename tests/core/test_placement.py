@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ import shapely
 import shapely.affinity
 from hypothesis import strategies as st
 
-import irsim
 import irsim._core as core
 from irsim.lookup import lookup
 from tests.core import oracle
@@ -103,7 +101,7 @@ def test_thousands_find_room_quickly() -> None:
     assert len(state.collision_pairs(0)) == 0
 
 
-def test_a_range_bounds_rear_axles_and_not_the_footprints_of_cars(tmp_path: Path) -> None:
+def test_a_range_bounds_rear_axles_and_not_the_footprints_of_cars(make) -> None:
     """As the description of `range_low` says: a car reaches (length + wheelbase) / 2 ahead of its position."""
     text = """
 world: {width: 40, height: 40}
@@ -113,11 +111,9 @@ robot:
   shape: {name: rectangle, length: 4.6, width: 1.8, wheelbase: 3.0}
   distribution: {name: random, range_low: [10, 10, 0], range_high: [30, 30, 0.001]}
 """
-    (tmp_path / "cars.yaml").write_text(text, encoding="utf-8")
-    env = irsim.make(tmp_path / "cars.yaml", seed=3, headless=True)
+    env = make(text, seed=3)
     places = np.array([robot.state[:2, 0] for robot in env.robot_list])
     fronts = np.array([robot.geometry.bounds[2] for robot in env.robot_list])
-    env.end(ending_time=0.0)
     assert ((places >= 10) & (places <= 30)).all()
     np.testing.assert_allclose(fronts - places[:, 0], (4.6 + 3.0) / 2, atol=0.01)
     assert fronts.max() > 30

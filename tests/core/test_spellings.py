@@ -119,14 +119,6 @@ def test_every_spelling_gives_the_same_motion(behavior: str, drive: str, spellin
     assert_equal([scene(behavior, drive, shape, pose) for shape in shapes], 60)
 
 
-@pytest.mark.parametrize("behavior", BEHAVIORS)
-def test_a_block_of_a_map_is_a_box(behavior: str, tmp_path: Path) -> None:
-    picture = np.full((200, 200), 255, dtype=np.uint8)
-    picture[86:106, 90:110] = 0  # 2 m at (10, 10.4); the first row is the top
-    boxed = scene(behavior, "diff", {"name": "rectangle", "length": 2, "width": 2}, [10, 10.4, 0])
-    assert_equal([boxed, with_map(boxed, picture, tmp_path)], 120)
-
-
 @pytest.mark.parametrize("local", ["dash", *BEHAVIORS])
 @pytest.mark.parametrize("start", [0.0, 0.4])
 def test_follow_goes_round_a_block_of_a_map_as_round_a_box(local: str, start: float, tmp_path: Path) -> None:

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import irsim
+from irsim.cli.app import app
 from irsim.env import Env
 from irsim.env.batch import batch
 from irsim.lib import KinematicsHandler, register_behavior, register_group_behavior, register_kinematics
 from irsim.scenario.open import import_modules, read_scenario
 from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
-from tests.warm import warm
 
 SCENE = """
 robot:
@@ -189,20 +189,22 @@ robot:
 """
 
 
-def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "irsim", *arguments]
-    return subprocess.run(warm(command), cwd=folder, capture_output=True, text=True, check=False)
-
-
-def test_drives_and_behaviors_of_an_imported_module(tmp_path: Path) -> None:
+def test_drives_and_behaviors_of_an_imported_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "own_code.py").write_text(MODULE)
     (tmp_path / "scenario.yaml").write_text(SCENARIO)
-    unknown = run(tmp_path, "validate", "scenario.yaml")
-    assert unknown.returncode == 2
-    assert "unknown-kinematics" in unknown.stdout
-    assert run(tmp_path, "validate", "scenario.yaml", "--import", "own_code").returncode == 0
-    done = run(tmp_path, "run", "scenario.yaml", "--strict", "--import", "own_code", "--require-success", "--json")
-    assert done.returncode == 0, done.stdout + done.stderr
+    monkeypatch.chdir(tmp_path)
+    imported = ("--import", "own_code")
+    unknown, valid, done = (
+        CliRunner().invoke(app, [verb, "scenario.yaml", *options])
+        for verb, *options in (
+            ("validate",),
+            ("validate", *imported),
+            ("run", "--strict", *imported, "--require-success", "--json"),
+        )
+    )
+    del sys.modules["own_code"]
+    assert (unknown.exit_code, valid.exit_code, done.exit_code) == (2, 0, 0), done.output
+    assert "unknown-kinematics" in unknown.output
 
 
 @pytest.mark.parametrize("name", ["modules_beside/own_place.py", "modules_beside.own_place"])

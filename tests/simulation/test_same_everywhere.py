@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 import irsim
 from tests.effort import examples
 
+Make = Callable[..., irsim.Env]
 DRIVES = {
     "diff": ("[1.0, 1.5]", "circle, radius: 0.2"),
     "omni": ("[1.0, 1.0]", "rectangle, length: 0.4, width: 0.3"),
@@ -102,12 +104,10 @@ def test_alone_in_batch_and_rolled_out_agree(tmp_path: Path, text: str, seed: in
             env.reset(random=True)
 
 
-def test_masked_reset_touches_only_its_worlds(tmp_path: Path) -> None:
-    path = tmp_path / "world.yaml"
-    path.write_text(
-        "robot: [{number: 2, kinematics: {name: diff}, distribution: {name: random}, behavior: {name: dash}}]"
-    )
-    batch = irsim.batch(str(path), 3, seeds=[1, 2, 3], threads=2)
+def test_masked_reset_touches_only_its_worlds(make: Make, tmp_path: Path) -> None:
+    text = "robot: [{number: 2, kinematics: {name: diff}, distribution: {name: random}, behavior: {name: dash}}]"
+    env = make(text, seed=2)
+    batch = irsim.batch(tmp_path / "scenario.yaml", 3, seeds=[1, 2, 3], threads=2)
     start = batch.pose.copy()
     for _ in range(5):
         batch.step()
@@ -116,27 +116,19 @@ def test_masked_reset_touches_only_its_worlds(tmp_path: Path) -> None:
     assert np.array_equal(batch.pose[[0, 2]], moved[[0, 2]])
     assert batch.count.tolist() == [5, 0, 5]
     assert not np.array_equal(batch.pose[1], start[1]), "the next scene is drawn"
-    env = irsim.make(str(path), seed=2, headless=True, log_level="CRITICAL")
     env.reset(random=True)
     assert np.array_equal(env.simulation.pose, batch.pose[1])
 
 
-def test_the_seed_rules(tmp_path: Path) -> None:
-    path = tmp_path / "world.yaml"
-    path.write_text(
-        "world: {seed: 4}\n"
-        "robot: {kinematics: {name: diff, noise: true}, distribution: {name: random}, behavior: {name: dash}}\n"
-    )
-
-    def make(**kwargs: int) -> irsim.Env:
-        return irsim.make(str(path), headless=True, log_level="CRITICAL", **kwargs)
+def test_the_seed_rules(make: Make) -> None:
+    text = "world: {seed: 4}\n"
+    text += "robot: {kinematics: {name: diff, noise: true}, distribution: {name: random}, behavior: {name: dash}}\n"
 
     def walk(env: irsim.Env) -> list[list[float]]:
         return [env.step() or env.simulation.pose[0].tolist() for _ in range(5)]
 
-    assert make().seed == 4
-    assert make(seed=9).seed == 9
-    env = make()
+    assert [make(text, seed=seed).seed for seed in (None, 9)] == [4, 9]
+    env = make(text, seed=None)
     start, first = env.simulation.pose.copy(), walk(env)
     env.reset()
     assert np.array_equal(env.simulation.pose, start), "reset keeps the scene"
@@ -144,7 +136,7 @@ def test_the_seed_rules(tmp_path: Path) -> None:
     env.reset(random=True)
     second = env.simulation.pose.copy()
     assert not np.array_equal(second, start)
-    other = make()
+    other = make(text, seed=None)
     other.reset(random=True)
     assert np.array_equal(other.simulation.pose, second), "the next scene is the same whatever happened before"
     env.set_random_seed(4)
@@ -152,14 +144,11 @@ def test_the_seed_rules(tmp_path: Path) -> None:
     assert np.array_equal(env.simulation.pose, start)
     assert walk(env) == first
     with pytest.raises(ValueError, match="64"):
-        make(seed=-1)
+        make(text, seed=-1)
 
 
-def test_user_generator_follows_the_episode(tmp_path: Path) -> None:
-    path = tmp_path / "world.yaml"
-    path.write_text("robot: {kinematics: {name: diff}}\n")
-    a = irsim.make(str(path), seed=3, headless=True, log_level="CRITICAL")
-    b = irsim.make(str(path), seed=3, headless=True, log_level="CRITICAL")
+def test_user_generator_follows_the_episode(make: Make) -> None:
+    a, b = (make("robot: {kinematics: {name: diff}}\n", seed=3) for _ in range(2))
     first = a.rng.random(3).tolist()
     assert b.rng.random(3).tolist() == first
     a.reset()
