@@ -7,9 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from irsim.common.arrays import Floats
 from irsim.metrics.definitions import METRICS
 from irsim.metrics.motion import motion_metrics
 from irsim.metrics.progress import outcome_metrics, progress_metrics
@@ -84,17 +81,8 @@ def episode_metrics(
         ways: Shortest paths in a world with the same static objects.
     """
     simulation = scenario if isinstance(scenario, Simulation) else Simulation(scenario, [seed])
-    records = simulation.scenario.objects
     distances = clearance(trace, simulation)
-    robots = distances.robots.tolist()
-    cut = tracks(
-        trace,
-        list(events),
-        distances,
-        simulation,
-        np.asarray(simulation.radius[: simulation.objects], dtype=np.float64),
-        [_top_speed(simulation.limits(robot)[1], records[robot].kinematics) for robot in robots],
-    )
+    cut = tracks(trace, list(events), distances, simulation)
     geodesics = Geodesics(simulation) if ways is None else ways
     order = [metric.key for metric in METRICS]
     watching = Watching.read(simulation, events)
@@ -161,10 +149,3 @@ def _of_zones(robots: list[dict[str, dict[str, float]]]) -> dict[str, dict[str, 
 def _without_rounding_error(value: float) -> float:
     """The value, or 0 if it is so small that it is a rounding error."""
     return 0.0 if abs(value) < _TINY else value
-
-
-def _top_speed(vel_max: Floats, kinematics: object) -> float:
-    if kinematics is None:
-        return 0.0
-    # not the norm of both: most behaviors never use both at once
-    return float(max(vel_max[:2]) if getattr(kinematics, "speeds", 0) == 2 else vel_max[0])

@@ -144,8 +144,6 @@ def tracks(
     events: list[Event],
     distances: Clearance,
     simulation: Simulation,
-    radii: Floats,
-    top_speeds: list[float],
 ) -> list[Track]:
     """Cut a trace into the tracks of its robots.
 
@@ -154,8 +152,6 @@ def tracks(
         events: Events of the episode.
         distances: Clearances of the robots.
         simulation: The simulation with the scene of the trace.
-        radii: (N,) bounding radii of all objects [m].
-        top_speeds: Top speeds of the robots [m/s].
     """
     scenario = simulation.scenario
     records = scenario.objects
@@ -166,7 +162,7 @@ def tracks(
     brief = [event for event in events if event.kind in BETWEEN_STEPS]
     humans = np.flatnonzero(kinds == HUMAN)
     beside = static_distance(trace.pose, simulation, humans.tolist())
-    first = int(trace.step[0])
+    first, radii = int(trace.step[0]), np.asarray(simulation.radius[: simulation.objects], dtype=np.float64)
     result = []
     for place, robot in enumerate(distances.robots.tolist()):
         name = trace.names[robot]
@@ -212,8 +208,15 @@ def tracks(
                 groups=tuple(group for group in together if len(group) > 1),
                 reaches=radii[them],
                 reach=float(radii[robot]),
-                top_speed=top_speeds[place],
+                top_speed=_top_speed(simulation.limits(robot)[1], record.kinematics),
                 holonomic=getattr(record.kinematics, "speeds", 0) == 2,
             )
         )
     return result
+
+
+def _top_speed(vel_max: Floats, kinematics: object) -> float:
+    if kinematics is None:
+        return 0.0
+    # not the norm of both: most behaviors never use both at once
+    return float(max(vel_max[:2]) if getattr(kinematics, "speeds", 0) == 2 else vel_max[0])
