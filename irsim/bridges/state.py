@@ -121,7 +121,7 @@ def _path(simulation: Simulation, row: int) -> Floats | None:
     route = state.route(row)
     if route is not None:
         return route
-    if hasattr(behavior, "planner") or getattr(behavior, "name", None) == "replay":
+    if hasattr(behavior, "planner") or not getattr(behavior, "needs_goal", True):
         return None
     points = np.array([simulation.pose[row, :2].tolist(), *(goal[:2] for goal in state.goals(row))])
     return points if len(points) > 1 and np.isfinite(points).all() else None

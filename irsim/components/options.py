@@ -49,6 +49,10 @@ class BehaviorOptions(Options):
     """Whether bodies that it moves touch others now and then."""
     stops_in_time: ClassVar[bool] = False
     """Whether it stops before what stands with any `timeHorizonObst`."""
+    needs_goal: ClassVar[bool] = True
+    """Whether it drives to the goal: without a `goal` of its own an object gets a hint."""
+    follows_paths: ClassVar[bool] = True
+    """Whether `follow` may name it as `local`, which drives along a path."""
 
     name: str
     """Name of the behavior."""
@@ -69,6 +73,11 @@ class BehaviorOptions(Options):
     def draws(self) -> bool:
         """Whether its decisions draw random numbers, so that they depend on the seed."""
         return False
+
+    def top_speed_of_its_own(self) -> float:
+        """Limit of speed among its own keys [m/s]; infinity without one."""
+        most = getattr(self, "maxSpeed", None)
+        return math.inf if most is None else float(most)
 
 
 class CustomOptions(BehaviorOptions):

@@ -63,7 +63,7 @@ class Select:
         custom: Names registered by user code. Their mappings become ``fallback``; if the name is built in as well, they
             become its model with any additional key.
         fallback: Model of custom and unknown names; without it unknown names are errors.
-        exclude: Names of the registry that are not accepted here.
+        accepts: Class attribute that is true for the models of the registry that are accepted here; None: for all.
         null: Whether null is accepted; it stays None.
         empty: Whether an empty mapping is accepted; it becomes None.
         short: Meaning of a text instead of a mapping: (name, key) makes ``{name: name, key: text}``; if the name is
@@ -80,20 +80,25 @@ class Select:
         alias: str | None = None,
         custom: CustomBehaviors | None = None,
         fallback: type[BaseModel] | None = None,
-        exclude: tuple[str, ...] = (),
+        accepts: str | None = None,
         null: bool = False,
         empty: bool = False,
         short: tuple[str | None, str] | None = None,
         trait: str | None = None,
     ) -> None:
         self.registry, self.default, self.folded, self.alias = registry, default, folded, alias
-        self.custom, self.fallback, self.exclude = custom, fallback, exclude
+        self.custom, self.fallback, self.accepts = custom, fallback, accepts
         self.null, self.empty, self.short, self.trait = null, empty, short, trait
 
     def names(self) -> list[str]:
         """Every name accepted here, with names of user code."""
         custom = self.custom.names() if self.custom is not None else []
-        return sorted({*(n for n in self.registry.names() if n not in self.exclude), *custom})
+        return sorted({*filter(self._is_accepted, self.registry.names()), *custom})
+
+    def _is_accepted(self, name: Any) -> bool:
+        if self.accepts is None or not isinstance(name, str) or (feature := self.registry.get(name)) is None:
+            return True
+        return bool(getattr(feature.options, self.accepts))
 
     def name_of(self, value: Mapping[str, Any]) -> Any:
         """The name that selects the model of a mapping."""
@@ -109,7 +114,7 @@ class Select:
     def model_for(self, value: Mapping[str, Any]) -> type[BaseModel] | None:
         """The model that validates ``value``; None if its name is unknown."""
         name = self.name_of(value)
-        if not isinstance(name, str) or name in self.exclude:
+        if not isinstance(name, str) or not self._is_accepted(name):
             return None
         feature = self.registry.get(name)
         if feature is not None and self.custom is not None and name in self.custom.names():
@@ -194,7 +199,7 @@ class Select:
         names, kind = self.names(), self.registry.kind
         near = nearest(name, names)
         message = f"'{name}' is not {'one of the kinematics' if kind == 'kinematics' else f'a {kind}'}"
-        if name in self.exclude:
+        if not self._is_accepted(name):
             message = f"'{name}' is a {kind}, but it cannot be used here"
         return problem(
             f"unknown-{kind}",
@@ -234,7 +239,7 @@ class Select:
         registered = parts is None or parts.user_code
         for name in self.registry.names() if registered else self.registry.installed():
             feature = self.registry.get(name)
-            if feature is None or name in self.exclude:
+            if feature is None or not self._is_accepted(name):
                 continue
             if self.trait is None or getattr(feature.options, self.trait, False):
                 names.append(name)

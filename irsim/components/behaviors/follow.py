@@ -36,6 +36,7 @@ class Follow(BehaviorOptions):
     """
 
     avoids: ClassVar[bool] = True
+    follows_paths: ClassVar[bool] = False
 
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [
@@ -63,7 +64,7 @@ class Follow(BehaviorOptions):
     planner: Annotated[Any, Select(PLANNERS, short=(None, "name")), Field(validate_default=True)] = "astar"
     """Path planner, with or without options."""
     local: Annotated[
-        Any, Select(BEHAVIORS, exclude=("follow", "replay"), short=(None, "name")), Field(validate_default=True)
+        Any, Select(BEHAVIORS, accepts="follows_paths", short=(None, "name")), Field(validate_default=True)
     ] = "dash"
     """Behavior that drives from corner to corner, as in `local: {name: orca, timeHorizon: 2}`."""
     replan: Annotated[Seconds, Field(gt=0)] | None = None

@@ -44,6 +44,9 @@ class Replay(BehaviorOptions):
         "trajectory": "poses",
     }
 
+    needs_goal: ClassVar[bool] = False
+    follows_paths: ClassVar[bool] = False
+
     name: Literal["replay"] = "replay"
     times: Annotated[
         list[Annotated[Component, Field(ge=0)]], Field(max_length=1_000_000, json_schema_extra={"x-unit": "s"})
@@ -90,6 +93,10 @@ class Replay(BehaviorOptions):
             middle = 3 * legs - slopes[:-1] - slopes[1:]
             fastest = max(fastest, *(np.hypot(*part.T).max() for part in (slopes, middle)))
         return max(_SLOWEST, float(fastest) * _MARGIN)
+
+    def top_speed_of_its_own(self) -> float:
+        """Limit of speed among its own keys [m/s]."""
+        return self.top_speed if self.times else 0.0
 
     def limits(self, step_time: float) -> list[float]:
         """Upper limits of the controls that it needs: two speeds [m/s] and a turn rate [rad/s]."""

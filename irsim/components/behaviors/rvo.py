@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
@@ -45,6 +46,10 @@ class Rvo(BehaviorOptions):
     """While it avoids something, a drive turns as fast as `vel_max` allows (`limit`) or as in IR-SIM (`fixed`)."""
     keep_gap: bool | None = None
     """Take at most 2/5 of a gap to a circle in a step; null: robots do, others do not."""
+
+    def top_speed_of_its_own(self) -> float:
+        """Limit of speed among its own keys [m/s]."""
+        return math.hypot(self.vxmax, self.vymax)
 
 
 BEHAVIORS.register(Rvo, kernel=core.RvoOptions)

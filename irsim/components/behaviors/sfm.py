@@ -70,5 +70,9 @@ class Sfm(BehaviorOptions):
     gaze_vision_angle: Annotated[Degrees, Field(gt=0, le=180)] = 90.0
     """In a group: half the angle that a member sees without turning."""
 
+    def top_speed_of_its_own(self) -> float:
+        """Limit of speed among its own keys [m/s]."""
+        return float(self.vmax)
+
 
 BEHAVIORS.register(Sfm, kernel=core.SfmOptions)

@@ -236,8 +236,8 @@ def _default_goal(context: Context, path: Path, entry: Entry, records: list[Obje
         for r in records
         if not r.static
         and not r.wander
-        and not r.recorded
-        and (r.behavior or r.group_behavior) is not None
+        and r.active_behavior is not None
+        and getattr(r.active_behavior, "needs_goal", True)
         and r.name not in context.bridged  # of which driven-without-goal tells
     ]
     if driven and entry.goal is None and entry.waypoints is None:

@@ -10,7 +10,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import irsim._core as core
-from irsim.components.options import CustomOptions
+from irsim.components.options import BehaviorOptions, CustomOptions
 from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 
@@ -138,20 +138,7 @@ def top_speed(record: Any) -> float:
         speed = abs(record.vel_max[0]) if built_in and record.vel_max else limits[0]
     else:
         return math.inf
-    return min(speed, _own_limit(options))
-
-
-def _own_limit(options: Any) -> float:
-    """Speed limit among the options of a behavior [m/s]; infinity without a limit."""
-    name = getattr(options, "name", "")
-    if name == "rvo":
-        return math.hypot(options.vxmax, options.vymax)
-    if name == "sfm":
-        return float(options.vmax)
-    if name == "replay":
-        return float(options.top_speed) if options.times else 0.0
-    most = getattr(options, "maxSpeed", None)
-    return math.inf if most is None else float(most)
+    return min(speed, options.top_speed_of_its_own()) if isinstance(options, BehaviorOptions) else speed
 
 
 @lru_cache(maxsize=256)  # thousands of objects may have one shape
