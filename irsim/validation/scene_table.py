@@ -103,7 +103,7 @@ def _row(
         role=first.role,
         drive=None if first.static or first.kinematics is None else str(getattr(first.kinematics, "name", "")),
         behavior=None if first.static or behavior is None else _behavior(behavior) + _task(first),
-        footprint=footprint_of(first) + (", each its own" if _differ(records) else ""),
+        footprint=footprint_of(first) + ", each its own" * any(record.shape != first.shape for record in records),
         poses=[_pose(state.pose[shown * objects + k]) for k in some],
         goals=[
             None if not goals else _goal(scenario.objects[k], goals[0]) for k, goals in zip(some, ways, strict=True)
@@ -112,7 +112,7 @@ def _row(
         ends_at=[
             None if not goals else _goal(scenario.objects[k], goals[-1]) for k, goals in zip(some, ways, strict=True)
         ],
-        sensors=sensors_in_words(first.sensors),
+        sensors=[_sensor(sensor) for sensor in first.sensors],
         appear_time=first.appear_time,
         start_time=first.start_time,
         vel_max=[] if first.static else list(first.vel_max),
@@ -139,11 +139,6 @@ def footprint_of(record: ObjectRecord) -> str:
         return str(shape.name)
     width, height = np.ptp(np.asarray(vertices, dtype=float), axis=0)[:2]
     return f"{shape.name} with {len(vertices)} vertices, {width:g} x {height:g}"
-
-
-def _differ(records: Sequence[ObjectRecord]) -> bool:
-    """Whether the objects of an entry have different footprints."""
-    return any(record.shape != records[0].shape for record in records)
 
 
 def _behavior(options: Any) -> str:
@@ -202,12 +197,8 @@ _MAX_BEAMS = 200_000
 """Number of beams of a scenario beyond which none are counted."""
 
 
-def sensors_in_words(sensors: Sequence[Any]) -> list[str]:
-    """Describe sensors: ``fmcw_lidar2d 120 deg, 10 m, 241 beams, motion_compensate, velocity noise 0.05``."""
-    return [_sensor(sensor) for sensor in sensors]
-
-
 def _sensor(sensor: Any) -> str:
+    """A sensor in words: ``fmcw_lidar2d 120 deg, 10 m, 241 beams, motion_compensate, velocity noise 0.05``."""
     if not getattr(sensor, "is_lidar", False):
         return str(sensor.name)
     facts = [f"{sensor.name} {np.degrees(sensor.angle_range):.3g} deg", f"{sensor.range_max:g} m"]

@@ -223,7 +223,10 @@ def find(words: Iterable[str], *, every: bool = False) -> list[Template]:
     templates = load_all()
     if not wanted:
         return templates
-    scores = {template.name: sum(word in _search_text(template) for word in wanted) for template in templates}
+    scores = {}
+    for template in templates:
+        text = " ".join((template.name, template.title, template.purpose, *template.tags)).lower()
+        scores[template.name] = sum(word in text for word in wanted)
     best = len(wanted) if every else max(scores.values(), default=0)
     return [template for template in templates if best and scores[template.name] == best]
 
@@ -236,7 +239,3 @@ def scenario_file(name: str) -> Path:
 def picture_file(name: str) -> Path:
     """Path of the picture of a template's start."""
     return resources.templates_directory() / name / "picture.png"
-
-
-def _search_text(template: Template) -> str:
-    return " ".join((template.name, template.title, template.purpose, *template.tags)).lower()

@@ -68,7 +68,7 @@ def image_raster(pixels: NDArray[Any], is_png: bool) -> Raster:
         pixels: (H, W) or (H, W, channels).
         is_png: Whether to scale levels to [0, 1] in single precision, as Matplotlib reads PNG files.
     """
-    full = _full_scale(pixels)
+    full = float(np.iinfo(pixels.dtype).max) if np.issubdtype(pixels.dtype, np.integer) else 1.0
     plain = pixels if pixels.ndim == 2 else _one_channel(pixels)
     if plain is not None and plain.dtype == np.uint8:
         levels = np.arange(256, dtype=np.uint8)[None]
@@ -101,10 +101,6 @@ def _one_channel(pixels: NDArray[Any]) -> NDArray[Any] | None:
         return pixels[..., 0]
     same = bool((pixels[..., 0] == pixels[..., 1]).all() and (pixels[..., 0] == pixels[..., 2]).all())
     return pixels[..., 0] if same else None
-
-
-def _full_scale(pixels: NDArray[Any]) -> float:
-    return float(np.iinfo(pixels.dtype).max) if np.issubdtype(pixels.dtype, np.integer) else 1.0
 
 
 def _reason(error: Exception) -> str:

@@ -28,17 +28,8 @@ _SINGLE = ("entry.vel_min", "entry.vel_max")
 _NAMES = ("entry.name", "entry.group_name", "world.status", "world.name")
 _TRUNCATED = ("alpha", "offset", "goal", "range_low", "range_high", "center")
 _CLIPPED = {"entry.number": 0, "entry.fov": 0.0, "entry.sensors.angle_range": 0.0}
-_CHECKED_IN_GROUPS = {
-    "sfm": (
-        "gamma",
-        "gaze_vision_angle",
-        "group_repulsion_threshold",
-        "relaxation_time",
-        "sigma_obstacle",
-        "social_groups",
-    ),
-    "orca": ("maxNeighbors",),
-}
+_GAZE = ("gaze_vision_angle", "group_repulsion_threshold", "social_groups")
+_CHECKED_IN_GROUPS = {"sfm": ("gamma", "relaxation_time", "sigma_obstacle", *_GAZE), "orca": ("maxNeighbors",)}
 """Keys whose wrong values make 2.12 fail to create a group behavior; it logs that and continues without one."""
 _NO_CHANGE = 1e-9
 """Change of velocity that is too small to move an object [m/s]."""

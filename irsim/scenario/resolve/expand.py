@@ -149,10 +149,7 @@ class _Maker:
     def __init__(self, world: WorldModel, role: Role, path: Path, entry: Entry, group: int, first_id: int) -> None:
         self.world, self.role, self.path, self.entry, self.group = world, role, path, entry, group
         self.first_id, self.count = first_id, entry.number
-        self.columns = {key: self._column(key) for key in SPREAD_KEYS}
-
-    def _column(self, key: str) -> Sequence[Any]:
-        return spread(getattr(self.entry, key), self.count, kind_of(key))
+        self.columns = {key: spread(getattr(entry, key), entry.number, kind_of(key)) for key in SPREAD_KEYS}
 
     def records(self) -> list[ObjectRecord]:
         """One record per object."""
@@ -197,7 +194,7 @@ class _Maker:
         value = {key: column[i] for key, column in self.columns.items()}
         vanish_time = self._follow_recording(value)
         kinematics = _drive(value["kinematics"])
-        shape = value["shape"] if value["shape"] is not None else _default_shape()
+        shape = value["shape"] if value["shape"] is not None else Circle(radius=DEFAULT_RADIUS)
         state_dim = entry.state_dim or (len(kinematics.state_rows) if kinematics else 3)
         vel_dim = entry.vel_dim or (len(kinematics.control_rows) if kinematics else _STATIC_CONTROLS)
         random = self._is_random()
@@ -302,42 +299,15 @@ class _Maker:
 
 
 SPREAD_KEYS = (
-    "name",
-    "tags",
-    "state",
-    "goal",
-    "waypoints",
-    "start_time",
-    "appear_time",
-    "velocity",
-    "kinematics",
-    "shape",
-    "behavior",
-    "group_behavior",
-    "sensors",
-    "plot",
-    "color",
-    "description",
-    "vel_min",
-    "vel_max",
-    "acce",
-    "angle_range",
-    "arrive_mode",
-    "group_name",
-    "mass",
-    "friction",
-    "inertia",
-    "restitution",
-)
+    "name", "tags", "state", "goal", "waypoints", "start_time", "appear_time", "velocity", "kinematics", "shape",
+    "behavior", "group_behavior", "sensors", "plot", "color", "description", "vel_min", "vel_max", "acce",
+    "angle_range", "arrive_mode", "group_name", "mass", "friction", "inertia", "restitution",
+)  # fmt: skip
 """Keys of an entry that may hold a list with one value per object."""
 
 
 def _drive(options: Any) -> KinematicsOptions | None:
     return None if options is None or options.name == "static" else options
-
-
-def _default_shape() -> BaseModel:
-    return Circle(radius=DEFAULT_RADIUS)
 
 
 def _control(values: list[float] | None, default: float, size: int, kinematics: Any) -> list[float]:
