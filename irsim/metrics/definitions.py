@@ -3,8 +3,9 @@
 The module of a family computes a value from the fields of ``Track`` (``trajectory.py``), which ends at the arrival, and
 returns it under its key; NaN where it is undefined. A metric of the whole episode goes to ``EPISODE_METRICS`` and to
 ``_of_episode`` in ``episode.py``. A new metric is an extra. ``skills/irsim-benchmark/scripts/verdict.py`` runs without
-irsim, so it has the key, too: in ``MORE``, ``LESS`` or ``EITHER``, and in ``SHARES`` if the unit is ``0/1``. Results,
-tables, ``irsim describe KEY`` and the MCP tools need no change.
+irsim, so it has the key, too: in ``MORE``, ``LESS`` or ``EITHER``, and in ``SHARES`` if the unit is ``0/1``. Results
+of benchmarks, ``irsim describe KEY`` and the MCP tools need no change; the printed table of a benchmark
+(``benchmarks/report/markdown.py``) and the result of one run (``results/run.py``) show a choice.
 """
 
 from __future__ import annotations
