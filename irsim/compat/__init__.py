@@ -10,14 +10,7 @@ if TYPE_CHECKING:
     from irsim.compat.differences import DIFFERENCES, KEY_DIFFERENCES, NAME_DIFFERENCES, Difference
     from irsim.compat.names import missing_names, reference_names
 
-__all__ = [
-    "DIFFERENCES",
-    "KEY_DIFFERENCES",
-    "NAME_DIFFERENCES",
-    "Difference",
-    "missing_names",
-    "reference_names",
-]
+__all__ = ["DIFFERENCES", "KEY_DIFFERENCES", "NAME_DIFFERENCES", "Difference", "missing_names", "reference_names"]
 
 __getattr__, __dir__ = lazy_names(
     __name__,

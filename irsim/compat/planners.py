@@ -330,11 +330,7 @@ class PRMPlanner(PathPlanner):
         self.n_sample, self.n_knn, self.max_edge_len = n_sample, n_knn, max_edge_len
 
     def planning(  # type: ignore[override]  # the argument order of IR-SIM 2.12
-        self,
-        start_pose: Any,
-        goal_pose: Any,
-        rng: np.random.Generator | None = None,
-        show_animation: bool = True,
+        self, start_pose: Any, goal_pose: Any, rng: np.random.Generator | None = None, show_animation: bool = True
     ) -> Floats | None:
         """Search for a path.
 

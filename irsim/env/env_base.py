@@ -9,16 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from irsim.common.lazy import computed
 from irsim.common.log import Logger
-from irsim.env import (
-    drawing,
-    lifetime,
-    live,
-    loop,
-    messages,
-    object_list,
-    policies,
-    queries,
-)
+from irsim.env import drawing, lifetime, live, loop, messages, object_list, policies, queries
 from irsim.env.parameters import PathParam
 from irsim.env.state import EnvState
 from irsim.graphics.scene.style import Palette

@@ -158,8 +158,7 @@ class KeyboardControl:
                 )
             return False
         self.listener = keyboard.Listener(
-            on_press=lambda key: self._forward(key, self.press),
-            on_release=lambda key: self._forward(key, self.release),
+            on_press=lambda key: self._forward(key, self.press), on_release=lambda key: self._forward(key, self.release)
         )
         self.listener.start()
         return True

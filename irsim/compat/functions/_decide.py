@@ -141,7 +141,6 @@ def dash(
     state: Floats,
     goal: Floats,
     vel_max: Floats,
-    *,
     goal_threshold: float,
     angle_tolerance: float = ANGLE_TOLERANCE,
     turning_acce: float = math.inf,

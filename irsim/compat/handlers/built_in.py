@@ -73,21 +73,12 @@ def DiffDash(
         angular_acce: Largest change of the yaw rate [rad/s^2].
         dt: Period [s].
     """
-    return dash(
-        "diff",
-        state,
-        goal,
-        max_vel,
-        goal_threshold=goal_threshold,
-        angle_tolerance=angle_tolerance,
-        turning_acce=angular_acce,
-        dt=dt,
-    )
+    return dash("diff", state, goal, max_vel, goal_threshold, angle_tolerance, angular_acce, dt)
 
 
 def OmniDash(state: Floats, goal: Floats, max_vel: Floats, goal_threshold: float = 0.1) -> Floats:
     """Return the (2, 1) body-frame velocity that moves a holonomic drive to its goal; see :func:`DiffDash`."""
-    return dash("omni", state, goal, max_vel, goal_threshold=goal_threshold)
+    return dash("omni", state, goal, max_vel, goal_threshold)
 
 
 def OmniAngularDash(
@@ -100,21 +91,12 @@ def OmniAngularDash(
     dt: float = 0.0,
 ) -> Floats:
     """Return the (3, 1) velocity of a holonomic drive that turns towards the goal and, once there, to its heading."""
-    return dash(
-        "omni_angular",
-        state,
-        goal,
-        max_vel,
-        goal_threshold=goal_threshold,
-        angle_tolerance=angle_tolerance,
-        turning_acce=angular_acce,
-        dt=dt,
-    )
+    return dash("omni_angular", state, goal, max_vel, goal_threshold, angle_tolerance, angular_acce, dt)
 
 
 def AckerDash(state: Floats, goal: Floats, max_vel: Floats, goal_threshold: float, angle_tolerance: float) -> Floats:
     """Return the (2, 1) control that drives a car to its goal: forward speed [m/s], steering angle [rad]."""
-    return dash("acker", state, goal, max_vel, goal_threshold=goal_threshold, angle_tolerance=angle_tolerance)
+    return dash("acker", state, goal, max_vel, goal_threshold, angle_tolerance)
 
 
 def OmniRVO(

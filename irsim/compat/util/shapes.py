@@ -9,6 +9,7 @@ from shapely.affinity import affine_transform
 
 from irsim.common.arrays import Floats
 from irsim.compat.functions.frames import get_affine_transform
+from irsim.compat.functions.polygons import polygon_inequality
 from irsim.compat.util.random import rng
 
 __all__ = [
@@ -53,15 +54,9 @@ def gen_inequal_from_vertex(vertex: Any) -> tuple[Floats | None, Floats | None]:
     Returns:
         G (N, 2), outward normals of any length, and h (N, 1); None and None if the polygon is not convex.
     """
-    convex, order = is_convex_and_ordered(vertex)
-    if not convex:
-        return None, None
-    points = np.asarray(vertex, dtype=np.float64).T
-    if order == "CW":
-        points = points[::-1]
-    edges = np.roll(points, -1, axis=0) - points
-    normals = np.column_stack([edges[:, 1], -edges[:, 0]])
-    return normals, (normals * points).sum(axis=1, keepdims=True)
+    convex, _ = is_convex_and_ordered(vertex)
+    inequality = polygon_inequality(np.asarray(vertex, dtype=np.float64).T) if convex else None
+    return inequality or (None, None)
 
 
 def geometry_transform(geometry: Any, state: Any) -> Any:

@@ -31,31 +31,10 @@ __all__ = [
     "World",
 ]
 
-
 _FURTHER = (
-    "static",
-    "mass",
-    "friction",
-    "inertia",
-    "restitution",
-    "vel_min",
-    "vel_max",
-    "acce",
-    "angle_range",
-    "behavior",
-    "group_behavior",
-    "goal_threshold",
-    "sensors",
-    "arrive_mode",
-    "description",
-    "group",
-    "group_name",
-    "state_dim",
-    "vel_dim",
-    "unobstructed",
-    "fov",
-    "fov_radius",
-    "name",
+    *("static", "mass", "friction", "inertia", "restitution", "vel_min", "vel_max", "acce", "angle_range", "behavior"),
+    *("group_behavior", "goal_threshold", "sensors", "arrive_mode", "description", "group", "group_name"),
+    *("state_dim", "vel_dim", "unobstructed", "fov", "fov_radius", "name"),
 )
 """Keys that ``ObjectBase`` also takes by position after ``color``, in the order of IR-SIM 2.12."""
 

@@ -171,14 +171,7 @@ class Compositor:
     def _draw_furniture(self, canvas: Any) -> None:
         ax, figure = self.ax, self.figure
         position = ax.get_position().bounds  # this applies the aspect, too
-        key = (
-            *figure.get_size_inches(),
-            figure.dpi,
-            *ax.get_xlim(),
-            *ax.get_ylim(),
-            *position,
-            ax.axison,
-        )
+        key = (*figure.get_size_inches(), figure.dpi, *ax.get_xlim(), *ax.get_ylim(), *position, ax.axison)
         parts = (ax.patch, ax.xaxis, ax.yaxis) if ax.axison else ()
         is_changed = any(part.stale for part in self._parts())
         if self._furniture is not None and key == self._furniture_key and not is_changed:

@@ -40,12 +40,7 @@ _HEAD_HALF_WIDTH = 0.3
 """Half the width of the head of an arrow, as a share of the width given."""
 _SHAFT_LENGTH = 0.6
 """Length of the shaft, as a share of the length of the arrow."""
-_KINDS = {
-    outlines.Circle: "circle",
-    outlines.Polygon: "polygon",
-    outlines.Line: "linestring",
-    outlines.Cells: "cells",
-}
+_KINDS = {outlines.Circle: "circle", outlines.Polygon: "polygon", outlines.Line: "linestring", outlines.Cells: "cells"}
 _ELLIPSE_POINTS = 64
 _SEGMENTS_PER_QUARTER = 32
 """Number of segments that stand for a quarter circle where shapes are united."""

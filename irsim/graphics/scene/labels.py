@@ -45,12 +45,7 @@ MAX_LABELS = 300
 
 
 def free_places(
-    boxes: Floats,
-    things: Floats,
-    view: Floats,
-    bodies: Callable[[], tuple[Floats, Floats]],
-    *,
-    clear: bool = True,
+    boxes: Floats, things: Floats, view: Floats, bodies: Callable[[], tuple[Floats, Floats]], *, clear: bool = True
 ) -> Floats:
     """Find a place for each label, in the order given; labels that cover nothing stay in place.
 
