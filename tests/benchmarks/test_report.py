@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 from pathlib import Path
 
 import pytest
@@ -15,7 +14,7 @@ from irsim.api.benchmark_report import MARKDOWN, PAGE, REPLAYS, write_report
 from irsim.benchmarks.comparison import benchmark
 from irsim.benchmarks.report.charts import charts
 from irsim.benchmarks.report.markdown import markdown
-from irsim.benchmarks.stored import run_plan
+from irsim.benchmarks.stored import RESULTS, run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.app import app
 from irsim.cli.benchmark import show_benchmark
@@ -45,13 +44,14 @@ policies: {orca: {name: orca, timeHorizon: 2}, dash: dash}
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, SuiteResult]:
-    """A folder with the report of a small suite, and its result."""
+    """A folder with the report of a small suite, beside it the table that the command prints, and the result."""
     place = tmp_path_factory.mktemp("report")
     (place / "small.yaml").write_text(SUITE, encoding="utf-8")
-    result = run_plan(suite_plan(str(place / "small.yaml")), place / "run", workers=1)
-    assert isinstance(result, SuiteResult)
-    write_report(result, place / "run")
-    return place / "run", result
+    words = ["benchmark", str(place / "small.yaml"), "--csv", "-o", str(place / "run"), "--workers", "1"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0, done.output
+    (place / "table.csv").write_text(done.stdout, encoding="utf-8")
+    return place / "run", SuiteResult.model_validate_json((place / "run" / RESULTS).read_bytes())
 
 
 def shown(result: SuiteResult) -> str:
@@ -94,11 +94,8 @@ def test_a_suite_prints_few_lines_of_failures(made: tuple[Path, SuiteResult]) ->
 
 
 def test_csv_of_a_suite_names_policy_family_protocol_and_values(made: tuple[Path, SuiteResult]) -> None:
-    place = made[0]  # the run is finished, so that its results are read
-    words = ["benchmark", str(place.with_name("small.yaml")), "--csv", "-o", str(place), "--resume"]
-    done = CliRunner().invoke(app, words)
-    assert done.exit_code == 0, done.output
-    rows = list(csv.DictReader(io.StringIO(done.stdout)))
+    with made[0].with_name("table.csv").open(encoding="utf-8") as table:
+        rows = list(csv.DictReader(table))
     assert len(rows) == len(made[1].episodes)
     row = next(row for row in rows if row["scenario"] == "square-3/yield" and row["behavior"] == "dash")
     cells = [row[key] for key in ("policy", "family", "protocol", "values.robot[0].number")]

@@ -33,7 +33,7 @@ def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def undisturbed(suite: Path) -> dict[str, str]:
     folder = suite.with_name("undisturbed")
-    run_plan(suite_plan(str(suite), seeds=4), folder, workers=1)
+    run_plan(suite_plan(str(suite), seeds=2), folder, workers=1)
     return contents(folder)
 
 
@@ -47,7 +47,7 @@ def contents(folder: Path) -> dict[str, str]:
 def test_half_a_line_at_the_end_of_the_log_is_run_again(
     cut: float, suite: Path, undisturbed: dict[str, str], tmp_path: Path
 ) -> None:
-    run_plan(suite_plan(str(suite), seeds=4), tmp_path / "run")
+    run_plan(suite_plan(str(suite), seeds=2), tmp_path / "run")
     log = tmp_path / "run" / EPISODES
     log.write_bytes(log.read_bytes()[: int(cut * log.stat().st_size)])
     (tmp_path / "run" / RESULTS).unlink()

@@ -36,10 +36,12 @@ class Table:
     Attributes:
         suite: Name of the suite.
         policies: The policies; None: the policies of the suite.
-        again: Names of the scenarios that the tests run again; None: all.
+        quick: Names of the scenarios that the quick tests run again.
+        again: Names of the scenarios that the slow tests run again; None: all.
     """
 
     suite: str
+    quick: tuple[str, ...]
     policies: tuple[str, ...] | None = None
     again: tuple[str, ...] | None = None
 
@@ -49,9 +51,10 @@ class Table:
 
 
 TABLES = {
-    "random_polygons_v1": Table("random_polygons_v1"),
+    "random_polygons_v1": Table("random_polygons_v1", ("robots-5", "robots-10")),
     "table_2": Table(
         "random_polygons_v1",
+        ("robots-5",),
         ("orca", "avocado", "sarl_multi_robot", "rl_rvo", "ppo", "ppo_freeze", "footprint_orca"),
         ("robots-5", "robots-10"),
     ),
