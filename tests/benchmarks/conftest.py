@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 
@@ -28,6 +29,30 @@ steps: 150
 protocols: [freeze, yield]
 policies: {orca: {name: orca, timeHorizon: 2}, dash: dash}
 """
+FRAGILE = """\
+import os, signal, time
+from pathlib import Path
+from irsim.benchmarks import episode, together
+
+def fragile(simulation, *rest, plain=episode.horizon_of):
+    [seed] = simulation.state.seed.tolist()
+    mark = Path({folder!r}, f"{{simulation.scenario.objects[0].behavior.name}}-{{seed}}")
+    if os.getpid() == {mine}:
+        time.sleep(1.0)  # leaves the work to the others
+    elif seed in {seeds} and ({always} or not mark.exists()):
+        with mark.open("a") as file:
+            file.write("x")
+        os.kill(os.getpid(), signal.SIGKILL)
+    return plain(simulation, *rest)
+
+episode.horizon_of = together.horizon_of = fragile
+"""
+
+
+def write_fragile(folder: Path, name: str, seeds: range, *, always: bool) -> None:
+    """Write a module with which other processes die in some episodes, always or the first time."""
+    code = FRAGILE.format(folder=str(folder), mine=os.getpid(), seeds=seeds, always=always)
+    (folder / f"{name}.py").write_text(code, encoding="utf-8")
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:

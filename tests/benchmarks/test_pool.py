@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -13,55 +12,34 @@ import pytest
 
 import irsim
 import irsim.benchmarks
-from irsim.benchmarks import episode
+from irsim.benchmarks import episode, together
 from irsim.benchmarks.pool import WorkerError
+from tests.benchmarks.conftest import write_fragile
 
 SCENE = """\
 world: {width: 8, height: 8}
 robot: {number: 4, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, distribution: {name: random},
         behavior: {name: dash}}
 """
-FRAGILE = """\
-import os, signal, time
-from pathlib import Path
-from irsim.benchmarks import episode
-
-def fragile(scenario, env, *rest, plain=episode.horizon_of):
-    mark = Path({folder!r}, f"{{scenario.objects[0].behavior.name}}-{{env.seed}}")
-    if os.getpid() == {mine}:
-        time.sleep(1.0)  # leaves the work to the others
-    elif env.seed in {seeds} and ({always} or not mark.exists()):
-        with mark.open("a") as file:
-            file.write("x")
-        os.kill(os.getpid(), signal.SIGKILL)
-    return plain(scenario, env, *rest)
-
-episode.horizon_of = fragile
-"""
 needs_kill = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs signals")
 
 
 @pytest.fixture
-def forgotten(monkeypatch: pytest.MonkeyPatch, at_once: None, ordinary_processes: None) -> None:
-    """The module of a test is forgotten."""
-    monkeypatch.setattr("irsim.benchmarks.episode.horizon_of", episode.horizon_of)
+def forgotten(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, at_once: None, ordinary_processes: None) -> None:
+    """The module of a test is found in its folder, and forgotten."""
+    monkeypatch.syspath_prepend(tmp_path)
+    for module in (episode, together):
+        monkeypatch.setattr(module, "horizon_of", episode.horizon_of)
     monkeypatch.delitem(sys.modules, "fragile", raising=False)
     episode.scenario_of.cache_clear()
-
-
-def fragile(monkeypatch: pytest.MonkeyPatch, folder: Path, seeds: range, *, always: bool) -> None:
-    """Write a module with which further processes die in some episodes, always or the first time."""
-    code = FRAGILE.format(folder=str(folder), mine=os.getpid(), seeds=seeds, always=always)
-    (folder / "fragile.py").write_text(code, encoding="utf-8")
-    monkeypatch.syspath_prepend(folder)
 
 
 @needs_kill
 @pytest.mark.slow(3)
 @pytest.mark.usefixtures("forgotten")
-def test_a_process_that_is_killed_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_that_is_killed_is_replaced(tmp_path: Path) -> None:
     undisturbed = irsim.benchmark(SCENE, ["dash", "orca"], 12, workers=1)
-    fragile(monkeypatch, tmp_path, range(4, 12, 2), always=False)
+    write_fragile(tmp_path, "fragile", range(4, 12, 2), always=False)
     counts: list[tuple[int, int]] = []
     result = irsim.benchmark(
         SCENE, ["dash", "orca"], 12, workers=3, imports=["fragile"], progress=lambda *now: counts.append(now)
@@ -75,10 +53,8 @@ def test_a_process_that_is_killed_is_replaced(tmp_path: Path, monkeypatch: pytes
 @needs_kill
 @pytest.mark.slow(3)
 @pytest.mark.usefixtures("forgotten")
-def test_an_episode_in_which_every_process_dies_is_given_up_and_the_others_are_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    fragile(monkeypatch, tmp_path, range(7, 8), always=True)
+def test_an_episode_in_which_every_process_dies_is_given_up_and_the_others_are_kept(tmp_path: Path) -> None:
+    write_fragile(tmp_path, "fragile", range(7, 8), always=True)
     with pytest.raises(WorkerError, match=r"3 processes died while they ran \(text\), seed 7, with dash"):
         irsim.benchmark(SCENE, ["dash"], 12, workers=2, imports=["fragile"], log=tmp_path / "log")
     assert (tmp_path / "dash-7").read_text() == "xxx"

@@ -11,6 +11,7 @@ import pytest
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite import SUITES
 from irsim.results.benchmark import SuiteResult
+from tests.benchmarks.central_planner import scene, share, succeeds
 from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES, changes, counted, lines_of
 
 
@@ -61,3 +62,15 @@ def test_the_table_counts_the_kept_episodes(name: str) -> None:
         "Taken for granted: contacts count at the ends of steps of 0.1 s only; robots change their speed at once"
         in page
     )
+
+
+def test_the_central_planner_solves_a_few_scenes() -> None:
+    solved, unsolved = share(10, range(100, 104))
+    assert sorted(solved) == [100, 101, 102, 103]
+    assert unsolved == []
+
+
+def test_a_robot_that_never_sets_off_does_not_arrive() -> None:
+    text = scene(5)
+    assert succeeds(text, 100, [0] * 5, 500)
+    assert not succeeds(text, 100, [0, 0, 0, 0, 500], 500)

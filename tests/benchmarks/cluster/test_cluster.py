@@ -21,6 +21,7 @@ from irsim.benchmarks.plan import file_plan
 from irsim.benchmarks.pool import WorkerError
 from irsim.benchmarks.stored import run_plan
 from tests.benchmarks.cluster.conftest import LocalCluster
+from tests.benchmarks.conftest import write_fragile
 from tests.skills.conftest import ROOT, fences
 
 pytestmark = [
@@ -34,22 +35,6 @@ world: {width: 8, height: 8, obstacle_map: floor.png}
 robot: {number: 4, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, distribution: {name: random}}
 """
 SEEDS = 30
-FRAGILE = """\
-import os, signal
-from pathlib import Path
-from irsim.benchmarks import episode, together
-
-def fragile(scenario, env, *rest, plain=episode.horizon_of):
-    mark = Path({folder!r}, f"seed-{{env.seed}}")
-    if os.getpid() != {mine} and env.seed in {seeds} and ({always} or not mark.exists()):
-        with mark.open("a") as file:
-            file.write("x")
-        os.kill(os.getpid(), signal.SIGKILL)
-    return plain(scenario, env, *rest)
-
-if os.getpid() != {mine}:
-    episode.horizon_of = together.horizon_of = fragile
-"""
 
 
 @pytest.fixture
@@ -61,12 +46,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     floor.save("floor.png")
     Path("scene.yaml").write_text(SCENE, encoding="utf-8")
     return tmp_path
-
-
-def fragile(folder: Path, name: str, seeds: range, *, always: bool) -> None:
-    """Write a module with which processes of the cluster die in some episodes, always or the first time."""
-    code = FRAGILE.format(folder=str(folder), mine=os.getpid(), seeds=seeds, always=always)
-    (folder / f"{name}.py").write_text(code, encoding="utf-8")
 
 
 def files_of(
@@ -123,11 +102,11 @@ def test_processes_that_are_killed_in_the_middle_change_nothing(
     folder: Path, cluster: LocalCluster, capfd: pytest.CaptureFixture[str]
 ) -> None:
     local = irsim.benchmark("scene.yaml", ["dash", "orca"], SEEDS, workers=1, steps=100)
-    fragile(folder, "fragile", range(3, SEEDS, 9), always=False)
+    write_fragile(folder, "fragile", range(3, SEEDS, 9), always=False)
     result = irsim.benchmark(
         "scene.yaml", ["dash", "orca"], SEEDS, cluster=cluster.address, steps=100, imports=["fragile"]
     )
-    assert list(folder.glob("seed-*"))
+    assert list(folder.glob("*-*"))
     assert capfd.readouterr() == ("", "")  # Ray would print that they died
     assert (result.episodes, result.rows) == (local.episodes, local.rows)
 
@@ -135,10 +114,10 @@ def test_processes_that_are_killed_in_the_middle_change_nothing(
 def test_an_episode_in_which_every_process_dies_is_given_up_and_the_others_are_kept(
     folder: Path, cluster: LocalCluster
 ) -> None:
-    fragile(folder, "poisonous", range(7, 8), always=True)
+    write_fragile(folder, "poisonous", range(7, 8), always=True)
     with pytest.raises(WorkerError, match=r"3 processes died while they ran scene\.yaml, seed 7, with dash"):
         irsim.benchmark("scene.yaml", "dash", 12, cluster=cluster.address, steps=50, imports=["poisonous"], log="log")
-    assert Path("seed-7").read_text().count("x") >= 3
+    assert Path("dash-7").read_text().count("x") >= 3
     kept = {row.seed for row in irsim.benchmarks.logged("log").episodes}
     assert kept
     assert 7 not in kept

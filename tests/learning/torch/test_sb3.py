@@ -1,4 +1,4 @@
-"""Environments of Stable-Baselines3."""
+"""Environments of Stable-Baselines3 and TorchRL."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
 from stable_baselines3 import PPO
 from stable_baselines3.common.evaluation import evaluate_policy
+from torchrl.envs.utils import check_env_specs
 
-from irsim.learning import SB3VecEnv, VectorEnv
+from irsim.learning import SB3VecEnv, TorchRLEnv, VectorEnv
 from tests.learning.tasks import crowd, lidar_among_boxes, task
 
 pytestmark = pytest.mark.learn
@@ -96,3 +98,34 @@ def test_ppo_learns_to_drive_ahead() -> None:
 def test_a_crowd_is_learnt_in() -> None:
     env = SB3VecEnv(crowd(3), 2)
     PPO("MlpPolicy", env, n_steps=16, batch_size=32, device="cpu").learn(200)
+
+
+# TorchRL --------------------------------------------------------------------------------------------------------------
+CHOICES = {"choices": [[0, 0], [1, 0], [0.5, 1]]}
+
+
+@pytest.mark.parametrize(
+    "made", [crowd(3, protocol="freeze"), lidar_among_boxes(), lidar_among_boxes(action=CHOICES)],
+    ids=["crowd", "controls", "choices"],
+)  # fmt: skip
+def test_the_check_of_torchrl_passes(made: dict[str, Any]) -> None:
+    check_env_specs(TorchRLEnv(made, 2))
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_worlds_equal_those_of_gymnasium(workers: int) -> None:
+    made = lidar_among_boxes(horizon=1.0)
+    env, other = TorchRLEnv(made, 3, seed=5, workers=workers), VectorEnv(made, 3, seed=5, autoreset_mode="SameStep")
+    data, (seen, _) = env.reset(), other.reset()
+    assert np.array_equal(data["observation"].numpy(), seen)
+    rng = np.random.default_rng(0)
+    for _ in range(25):
+        actions = rng.uniform(-1, 1, (3, 2)).astype(np.float32)
+        data["action"] = torch.from_numpy(actions)
+        stepped, data = env.step_and_maybe_reset(data)
+        seen, reward, terminated, truncated, _ = other.step(actions)
+        assert np.array_equal(data["observation"].numpy(), seen)
+        assert np.allclose(stepped["next", "reward"].numpy()[:, 0], reward)
+        assert np.array_equal(stepped["next", "terminated"].numpy()[:, 0], terminated)
+        assert np.array_equal(stepped["next", "truncated"].numpy()[:, 0], truncated)
+    env.close()
