@@ -9,38 +9,24 @@ import importlib.util
 import sys
 from collections import Counter
 from dataclasses import replace
-from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
-from types import ModuleType
+from pathlib import Path
 
 
-class _Fault(MetaPathFinder, Loader):
-    """Finds one module and puts a fault into its source."""
-
-    def __init__(self, module: str, old: str, new: str) -> None:
-        self.module, self.old, self.new = module, old, new
-
-    def find_spec(self, fullname: str, path: object, target: object = None) -> ModuleSpec | None:
-        if fullname != self.module:
-            return None
-        sys.meta_path.remove(self)
-        spec = importlib.util.find_spec(fullname)
-        assert spec is not None
-        assert spec.origin is not None
-        return importlib.util.spec_from_file_location(fullname, spec.origin, loader=self)
-
-    def exec_module(self, module: ModuleType) -> None:
-        assert module.__file__ is not None
-        with open(module.__file__, encoding="utf-8") as file:
-            source = file.read()
-        if source.count(self.old) != 1:
-            raise SystemExit(f"{module.__file__} holds {self.old!r} {source.count(self.old)} times")
-        exec(compile(source.replace(self.old, self.new), module.__file__, "exec"), module.__dict__)
+def put_in(module: str, old: str, new: str) -> None:
+    """Import a module with a fault in its source, before anything else imports it."""
+    spec = importlib.util.find_spec(module)
+    assert spec is not None
+    assert spec.origin is not None
+    source = Path(spec.origin).read_text(encoding="utf-8")
+    if source.count(old) != 1:
+        raise SystemExit(f"{spec.origin} holds {old!r} {source.count(old)} times")
+    sys.modules[module] = importlib.util.module_from_spec(spec)
+    exec(compile(source.replace(old, new), spec.origin, "exec"), sys.modules[module].__dict__)
 
 
 def main(file: str, old: str, new: str, *cases: str) -> None:
     """Try the cases with the fault until a verdict is wrong; print it, or nothing."""
-    sys.meta_path.insert(0, _Fault(f"irsim_evals.{file.removesuffix('.py').replace('/', '.')}", old, new))
+    put_in(f"irsim_evals.{file.removesuffix('.py').replace('/', '.')}", old, new)
     from irsim_evals.grader.outcome import NOT_REACHED
     from irsim_evals.proof.prove import tried
     from irsim_evals.proof.trials import trials_of

@@ -70,9 +70,10 @@ def pytest_itemcollected(item: pytest.Item) -> None:
     item.add_marker("one_python")
 
 
-def commands(folder: Path) -> list[list[str]]:
-    """The commands on the page of an example, in order."""
-    text = (folder / "elements.md").read_text(encoding="utf-8")
+def commands(page: Path) -> list[list[str]]:
+    """The commands on a page, or on that of an example, in order."""
+    page = page / "elements.md" if page.is_dir() else page
+    text = page.read_text(encoding="utf-8")
     return [shlex.split(line) for block in fences(text, "bash") for line in block.splitlines()]
 
 

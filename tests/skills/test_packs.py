@@ -110,11 +110,8 @@ def test_scripts_name_the_version_they_were_written_for(path: Path) -> None:
     assert "input(" not in text  # an agent cannot answer prompts
 
 
-def test_each_pack_has_scripts() -> None:
+def test_each_pack_has_scripts_and_worked_examples() -> None:
     assert {path.parents[1].name for path in SCRIPTS} == {skill.name for skill in FOLDERS}
-
-
-def test_each_pack_has_worked_examples() -> None:
     for skill in FOLDERS:
         assert len([folder for folder in EXAMPLES if folder.is_relative_to(skill)]) >= 2, skill.name
 

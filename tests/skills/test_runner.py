@@ -78,8 +78,7 @@ def test_the_loop_runs_and_repeats_itself(folder: Path) -> None:
 
 
 def test_the_script_works_as_written(folder: Path) -> None:
-    [command] = [line for block in fences(BODY, "bash") for line in block.splitlines()]
-    words = shlex.split(command)
+    [words] = commands(SKILL / "SKILL.md")
     told = json.loads(execute(["python", str(SKILL / words[1]), *words[2:]], folder))
     assert told["seed"] == 7
     assert len(told["episodes"]) == 5
@@ -107,8 +106,7 @@ def test_the_scripts_exit_codes_tell_whose_fault_it_is(folder: Path, words: list
 
 def test_without_a_time_limit_the_script_has_the_horizon_of_irsim_run(folder: Path) -> None:
     (folder / "open.yaml").write_text(SKELETON, encoding="utf-8")
-    script = str(SKILL / "scripts" / "episodes.py")
-    told = json.loads(execute(["python", script, "open.yaml", "--episodes", "1"], folder))
+    _, told = script(SKILL / "scripts" / "episodes.py", "open.yaml", "--episodes", "1", folder=folder)
     run = irsim.run(folder / "open.yaml")
     assert run.time_limit_from == "default"
     assert told["steps_at_most"] * 0.1 == pytest.approx(run.time_limit)
@@ -178,9 +176,8 @@ def test_what_it_names_exists() -> None:
         assert hasattr(Env, name) or name in ("seed", "scenario"), name
     for name in ("state", "goal", "velocity_xy", "get_lidar_scan", "set_state"):
         assert hasattr(ScriptObject, name)
-    commands = {span.split()[1] for span in spans(BODY) if span.startswith("irsim ")}
-    known = {"run", "render", "benchmark", "inspect", "replay", "validate", "export", "diff-runs", "train"}
-    assert commands <= known
+    named = {span.split()[1] for span in spans(BODY) if span.startswith("irsim ")}
+    assert named <= {"run", "render", "benchmark", "inspect", "replay", "validate", "export", "diff-runs", "train"}
 
 
 def test_what_it_warns_of_is_so(folder: Path) -> None:
@@ -254,9 +251,7 @@ def test_a_program_of_any_kind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         finally:
             driver.kill()
     [robot] = json.loads(done.stdout)["robots"]
-    assert robot["path_length"] == pytest.approx(1.53, abs=0.03), (
-        "half a meter per second, after a first step of its own"
-    )
+    assert robot["path_length"] == pytest.approx(1.53, abs=0.03)  # 0.5 m/s, after a first step of its own
 
 
 def wait_for(port: str) -> None:
@@ -293,26 +288,17 @@ def test_the_commands_about_recorded_pedestrians_work(tmp_path: Path, monkeypatc
     (tmp_path / "obsmat.txt").write_text(crowds.obsmat())
     (tmp_path / "crowd.vsp").write_text(crowds.vsp())
     np.savetxt(tmp_path / "H.txt", np.array([[0.02, 0, -7.2], [0, -0.02, 5.76], [0, 0, 1]]))
-    commands = [
-        line
-        for block in fences((BRIDGE_PAGES / "pedestrians.md").read_text(encoding="utf-8"), "bash")
-        for line in block.splitlines()
-    ]
-    assert len(commands) == 9
-    commands = [f"{command} --seeds 2" if command.startswith("irsim benchmark") else command for command in commands]
-    for command in commands:
-        done = CliRunner().invoke(app, shlex.split(command)[1:])
-        assert done.exit_code == 0, (command, done.output)
+    told = commands(BRIDGE_PAGES / "pedestrians.md")
+    assert len(told) == 9
+    for _, *words in told:
+        done = CliRunner().invoke(app, [*words, *(["--seeds", "2"] if words[0] == "benchmark" else [])])
+        assert done.exit_code == 0, (words, done.output)
     texts = {path.stem: path.read_text() for path in tmp_path.glob("*.yaml")}
     assert set(texts) == {"crowd", "crowd_suite", "zara", "corner", "part", "people", "short"}
     assert "robot:" not in texts["people"]
     places = [text[text.index("poses:") :].split("]")[0] for text in (texts["zara"], texts["corner"])]
     first = [np.array([float(v) for v in text.split("[[")[1].split(",")]) for text in places]
     np.testing.assert_allclose(*first, atol=1e-9)
-
-
-def test_the_skill_names_the_guide_to_learning() -> None:
-    assert "(guides/learning.md)" in (SKILL / "SKILL.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("with_draws", [False, True])
@@ -333,6 +319,7 @@ def test_the_task_of_the_guide_is_valid_and_steps(with_draws: bool, tmp_path: Pa
     assert env.step(env.action_space.sample())[0].shape == (4, env.worlds.eyes.size)
 
 
-def test_the_tasks_that_the_guide_names_are_bundled() -> None:
+def test_the_skill_names_the_guide_to_learning_and_the_guide_bundled_tasks() -> None:
+    assert "(guides/learning.md)" in BODY
     named = set(re.findall(r"`(goal_lidar|multi_robot|[a-z]+_[a-z]+)`", GUIDE)) & {"goal_lidar", "multi_robot"}
     assert named == {"goal_lidar", "multi_robot"} <= set(TASKS.names())

@@ -66,7 +66,7 @@ def horizon_of(env: Any, steps: int | None) -> int:
     if steps is not None:
         return steps
     limit = env.scenario.world.time_limit
-    seconds = default_time_limit(env.scenario, env) if limit is None else limit
+    seconds = default_time_limit(env.simulation) if limit is None else limit
     return math.ceil(seconds / env.step_time - 1e-9)  # as irsim run does
 
 

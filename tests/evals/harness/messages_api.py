@@ -175,11 +175,8 @@ def _events(message: dict[str, Any]) -> Iterator[dict[str, Any]]:
     for index, block in enumerate(message["content"]):
         if block["type"] == "text":
             yield {"type": "content_block_start", "index": index, "content_block": {"type": "text", "text": ""}}
-            yield {
-                "type": "content_block_delta",
-                "index": index,
-                "delta": {"type": "text_delta", "text": block["text"]},
-            }
+            delta = {"type": "text_delta", "text": block["text"]}
+            yield {"type": "content_block_delta", "index": index, "delta": delta}
         else:
             yield {"type": "content_block_start", "index": index, "content_block": {**block, "input": {}}}
             text = json.dumps(block["input"])
