@@ -19,6 +19,74 @@ NO_CODES = {"irsim-mcp"}
 """Looks like one: the name of the program before what it says."""
 
 
+REFUSED = {
+    "unknown-argument: there is no argument 'scenario_yml' (run_episode). Fix: did you mean scenario_yaml?": (
+        "run_episode",
+        {"scenario_yml": ROOM},
+    ),
+    "unknown-argument: there is no argument 'behavior' (lookup). Fix: lookup takes topic, parameters.": (
+        "lookup",
+        {"behavior": "rvo"},
+    ),
+    "unknown-tool: there is no tool 'run_episodes'. Fix: did you mean run_episode?": ("run_episodes", {}),
+    "unknown-tool: there is no tool 'delete_everything'. Fix: the tools are lookup, validate_": (
+        "delete_everything",
+        {},
+    ),
+    "(max_steps). Fix: give an integer from 1 to 5000.": ("run_episode", {"scenario_yaml": ROOM, "max_steps": 0}),
+    "bad-argument: -1 is not accepted": ("run_episode", {"scenario_yaml": ROOM, "seed": -1}),
+    "(max_wall_s). Fix: give an integer from 1 to 45.": ("run_episode", {"scenario_yaml": ROOM, "max_wall_s": 46}),
+    "Fix: give an integer from 200 to 1024.": ("render_snapshot", {"scenario_yaml": ROOM, "size_px": 2000}),
+    "(step). Fix: give an integer from -1 to 5000.": ("render_snapshot", {"scenario_yaml": ROOM, "step": 5001}),
+    "Fix: give one of concise, detailed, json.": (
+        "validate_scenario",
+        {"scenario_yaml": ROOM, "response_format": "short"},
+    ),
+    "(scenario_yaml). Fix: give text.": ("validate_scenario", {"scenario_yaml": {"world": {}}}),
+    "-1 is not accepted (from_step). Fix: give an integer from 0 on": ("inspect_run", {"run_id": "a", "from_step": -1}),
+    "bad-argument: run_id must be given (inspect_run). Fix: run_id: give text of at most 100 ": ("inspect_run", {}),
+    "bad-argument: run_id must be given": ("inspect_run", {"run_id": None}),
+    "(every). Fix: give an integer from 1 on.": ("inspect_run", {"run_id": "a", "every": 0}),
+    "(run_id). Fix: give text of at most 100 characters.": ("inspect_run", {"run_id": "x" * 101}),
+    'bad-argument: "speeed" is not accepted (fields[1]). Fix: did you mean speed?': (
+        "inspect_run",
+        {"run_id": "a", "fields": ["x", "speeed"]},
+    ),
+    "3 is not accepted (fields[1]). Fix: give one of x, y, ": ("inspect_run", {"run_id": "a", "fields": ["x", 3]}),
+    '"row" is not accepted (view). Fix: did you mean rows?': ("inspect_run", {"run_id": "a", "view": "row"}),
+    "(region). Fix: give a list of 4 numbers.": ("render_snapshot", {"scenario_yaml": ROOM, "region": [1, 2]}),
+    "[1] is not accepted (parameters.beams). Fix: give text or true or false or an integer or a number.": (
+        "lookup",
+        {"topic": "crossing", "parameters": {"beams": [1]}},
+    ),
+    "bad-argument: true is not accepted (seed).": ("run_episode", {"scenario_yaml": ROOM, "seed": True}),
+    'bad-argument: "10" is not accepted (max_steps).': ("run_episode", {"scenario_yaml": ROOM, "max_steps": "10"}),
+    'step does not accept -2; return_image does not accept "no"': (
+        "render_snapshot",
+        {"scenario_yaml": ROOM, "return_image": "no", "step": -2},
+    ),
+    "bad-argument: no scenario is given. Fix: give scenario_yaml": ("validate_scenario", {}),
+    "bad-argument: no scenario is given.": ("run_episode", {"scenario_path": "", "scenario_yaml": ""}),
+    "bad-argument: both scenario_path and ": ("render_snapshot", {"scenario_path": "a.yaml", "scenario_yaml": ROOM}),
+    "(scenario_path). Fix: did you mean 'room.yaml'?": ("validate_scenario", {"scenario_path": "room.yml"}),
+    "file-not-found: there is no file 'nothing-like-it' ": ("validate_scenario", {"scenario_path": "nothing-like-it"}),
+    "Fix: 'doorway' is a template: lookup topic='doorway' returns its YAML; pass the text as scenario_yaml": (
+        "run_episode",
+        {"scenario_path": "doorway"},
+    ),
+    "Fix: 'maze' is a template: lookup topic='maze' returns its YAML; give its text": (
+        "benchmark",
+        {"scenarios": ["templates/maze.yaml"]},
+    ),
+    "not-a-file: 'folder' is a folder": ("validate_scenario", {"scenario_path": "folder"}),
+    "file-too-large: a scenario must have at most 262,144 bytes, got 262,145": (
+        "validate_scenario",
+        {"scenario_yaml": "#" * 262_145},
+    ),
+}
+"""Part of the line of an error -> the call that is refused with it."""
+
+
 @pytest.fixture(scope="module")
 def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A workspace with a scenario and a folder."""
@@ -29,99 +97,9 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("era", ERAS)
-@pytest.mark.parametrize(
-    ("tool", "arguments", "error"),
-    [
-        (
-            "run_episode",
-            {"scenario_yml": ROOM},
-            "unknown-argument: there is no argument 'scenario_yml' (run_episode). Fix: did you mean scenario_yaml?",
-        ),
-        (
-            "lookup",
-            {"behavior": "rvo"},
-            "unknown-argument: there is no argument 'behavior' (lookup). Fix: lookup takes topic, parameters.",
-        ),
-        ("run_episodes", {}, "unknown-tool: there is no tool 'run_episodes'. Fix: did you mean run_episode?"),
-        (
-            "delete_everything",
-            {},
-            "unknown-tool: there is no tool 'delete_everything'. Fix: the tools are lookup, validate_",
-        ),
-        ("run_episode", {"scenario_yaml": ROOM, "max_steps": 0}, "(max_steps). Fix: give an integer from 1 to 5000."),
-        ("run_episode", {"scenario_yaml": ROOM, "seed": -1}, "bad-argument: -1 is not accepted"),
-        ("run_episode", {"scenario_yaml": ROOM, "max_wall_s": 46}, "(max_wall_s). Fix: give an integer from 1 to 45."),
-        ("render_snapshot", {"scenario_yaml": ROOM, "size_px": 2000}, "Fix: give an integer from 200 to 1024."),
-        ("render_snapshot", {"scenario_yaml": ROOM, "step": 5001}, "(step). Fix: give an integer from -1 to 5000."),
-        (
-            "validate_scenario",
-            {"scenario_yaml": ROOM, "response_format": "short"},
-            "Fix: give one of concise, detailed, json.",
-        ),
-        ("validate_scenario", {"scenario_yaml": {"world": {}}}, "(scenario_yaml). Fix: give text."),
-        (
-            "inspect_run",
-            {"run_id": "a", "from_step": -1},
-            "-1 is not accepted (from_step). Fix: give an integer from 0 on",
-        ),
-        ("inspect_run", {}, "bad-argument: run_id must be given (inspect_run). Fix: run_id: give text of at most 100 "),
-        ("inspect_run", {"run_id": None}, "bad-argument: run_id must be given"),
-        ("inspect_run", {"run_id": "a", "every": 0}, "(every). Fix: give an integer from 1 on."),
-        ("inspect_run", {"run_id": "x" * 101}, "(run_id). Fix: give text of at most 100 characters."),
-        (
-            "inspect_run",
-            {"run_id": "a", "fields": ["x", "speeed"]},
-            'bad-argument: "speeed" is not accepted (fields[1]). Fix: did you mean speed?',
-        ),
-        ("inspect_run", {"run_id": "a", "fields": ["x", 3]}, "3 is not accepted (fields[1]). Fix: give one of x, y, "),
-        ("inspect_run", {"run_id": "a", "view": "row"}, '"row" is not accepted (view). Fix: did you mean rows?'),
-        ("render_snapshot", {"scenario_yaml": ROOM, "region": [1, 2]}, "(region). Fix: give a list of 4 numbers."),
-        (
-            "lookup",
-            {"topic": "crossing", "parameters": {"beams": [1]}},
-            "[1] is not accepted (parameters.beams). Fix: give text or true or false or an integer or a number.",
-        ),
-        ("run_episode", {"scenario_yaml": ROOM, "seed": True}, "bad-argument: true is not accepted (seed)."),
-        ("run_episode", {"scenario_yaml": ROOM, "max_steps": "10"}, 'bad-argument: "10" is not accepted (max_steps).'),
-        (
-            "render_snapshot",
-            {"scenario_yaml": ROOM, "return_image": "no", "step": -2},
-            'step does not accept -2; return_image does not accept "no"',
-        ),
-        ("validate_scenario", {}, "bad-argument: no scenario is given. Fix: give scenario_yaml"),
-        ("run_episode", {"scenario_path": "", "scenario_yaml": ""}, "bad-argument: no scenario is given."),
-        (
-            "render_snapshot",
-            {"scenario_path": "a.yaml", "scenario_yaml": ROOM},
-            "bad-argument: both scenario_path and ",
-        ),
-        ("validate_scenario", {"scenario_path": "room.yml"}, "(scenario_path). Fix: did you mean 'room.yaml'?"),
-        (
-            "validate_scenario",
-            {"scenario_path": "nothing-like-it"},
-            "file-not-found: there is no file 'nothing-like-it' ",
-        ),
-        (
-            "run_episode",
-            {"scenario_path": "doorway"},
-            "Fix: 'doorway' is a template: lookup topic='doorway' returns its YAML; pass the text as scenario_yaml",
-        ),
-        (
-            "benchmark",
-            {"scenarios": ["templates/maze.yaml"]},
-            "Fix: 'maze' is a template: lookup topic='maze' returns its YAML; give its text",
-        ),
-        ("validate_scenario", {"scenario_path": "folder"}, "not-a-file: 'folder' is a folder"),
-        (
-            "validate_scenario",
-            {"scenario_yaml": "#" * 262_145},
-            "file-too-large: a scenario must have at most 262,144 bytes, got 262,145",
-        ),
-    ],
-)
-async def test_one_line_with_a_fix(
-    client: Caller, workspace: Path, tool: str, arguments: dict[str, object], error: str
-) -> None:
+@pytest.mark.parametrize("error", REFUSED)
+async def test_one_line_with_a_fix(client: Caller, workspace: Path, error: str) -> None:
+    tool, arguments = REFUSED[error]
     told = await client.error(tool, **arguments)
     assert error in told
     code = told.partition(":")[0]
