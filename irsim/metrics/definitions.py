@@ -104,7 +104,7 @@ def _extras() -> tuple[Metric, ...]:
             "rad",
             "cumulative_heading_change, minus the shortest path's (with the first turn, if it must turn to move)",
         ),
-        less("path_efficiency", "ratio", "path length / L*; 1 is best"),
+        less("path_efficiency", "ratio", "path length of a robot that arrived / L*, the shortest path; 1 is best"),
         less("curvature", "1/m", "mean Menger curvature of points at least 0.05 m apart"),
         less("roughness", "1/m", "mean absolute change of that curvature"),
         less("angle_over_length", "rad/m", "cumulative_heading_change / path length"),
