@@ -6,6 +6,7 @@ follows them (README.md).
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 from dataclasses import dataclass
@@ -19,6 +20,12 @@ import yaml
 import irsim
 from tests.parity.play import play
 
+pytestmark = pytest.mark.one_python
+
+HERE = Path(__file__).resolve().parent
+SCENARIOS = sorted((HERE / "scenarios").glob("*.yaml"))
+TOLERANCE = 1e-9
+"""Largest absolute difference: m, rad, m/s, s."""
 Trace = dict[str, np.ndarray]
 SAGITTA = math.cos(math.pi / 64)
 """Inner over outer radius of a regular 64-gon."""
@@ -96,12 +103,7 @@ def apply(ids: list[str], field: str, ours: np.ndarray, trace: np.ndarray) -> tu
     return ours, trace
 
 
-HERE = Path(__file__).resolve().parent
-SCENARIOS = sorted((HERE / "scenarios").glob("*.yaml"))
-TOLERANCE = 1e-9
-"""Largest absolute difference: m, rad, m/s, s."""
-
-
+@functools.cache
 def custom_of(path: Path) -> dict[str, Any]:
     return dict(yaml.safe_load(path.read_text(encoding="utf-8"))["custom"])
 

@@ -18,6 +18,8 @@ from tests.core.worlds import scene as core_scene
 from tests.parity.decisions.orca_group_record import FILE, scenario
 from tests.parity.decisions.scenes import FAMILIES, decide, deciders, scene
 
+pytestmark = pytest.mark.one_python
+
 HERE = Path(__file__).resolve().parent
 TOLERANCE = 1e-6
 """Largest absolute difference of an executed command: m/s, rad/s."""
