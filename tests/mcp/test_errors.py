@@ -151,11 +151,11 @@ def test_every_code_that_is_told_anywhere_is_in_the_list() -> None:
     given: dict[str, dict[str, str]] = {}  # by the name of what is called
     root = Path(__file__).resolve().parents[2]
     for path in (*(root / "irsim").rglob("*.py"), *(root / "mcp_server").rglob("*.py")):
-        source = path.read_text(encoding="utf-8")
+        source, name_of_file = path.read_text(encoding="utf-8"), path.relative_to(root)
         if not re.search("[\"'][a-z]+(-[a-z0-9]+)+(: |[\"'])", source):
             continue
         for node in ast.walk(ast.parse(source)):
-            place = f"{path.relative_to(root)}:{getattr(node, 'lineno', 0)}"
+            place = f"{name_of_file}:{getattr(node, 'lineno', 0)}"
             text = text_in(node)
             if text is not None and (match := re.match(r"([a-z]+(?:-[a-z0-9]+)+): \S", text)):
                 told[match[1]] = place
