@@ -13,7 +13,6 @@ import pytest
 from PIL import Image
 
 import irsim
-from irsim.lib import register_behavior
 from tests.env.driving import Make, take_steps
 
 ONE = """
@@ -185,21 +184,6 @@ def test_missing_file_names_places_and_near_matches(tmp_path: Any, monkeypatch: 
     with pytest.raises(FileNotFoundError, match=r"crossing\.yaml") as caught:
         irsim.make("crosing.yaml")
     assert str(tmp_path) in str(caught.value)
-
-
-def test_custom_behavior_registered_as_function(make: Make) -> None:
-    @register_behavior("diff", "test_spin")
-    def spin(ego_object: Any, external_objects: list[Any], **kwargs: Any) -> Any:
-        assert len(external_objects) == 1
-        return np.array([[0.0], [kwargs["speed"]]])
-
-    text = WALL.replace("{name: dash}", "{name: test_spin, speed: 0.7}")
-    env = make(text)
-    env.step()
-    assert (env.robot.velocity[:, 0].tolist(), env.robot.state[2, 0]) == ([0.0, 0.7], pytest.approx(0.07))
-    assert make(text).rollout(3).pose[0].tolist() == env.simulation.pose.tolist()
-    with pytest.raises(ValueError, match="not finite"):
-        make(text.replace("0.7", ".nan")).step()
 
 
 def test_unregistered_behavior_fails_at_the_first_step_only(make: Make) -> None:
