@@ -118,29 +118,23 @@ def serpentine() -> Any:
     return cells
 
 
+def large(robot: dict[str, Any], size: float, *obstacles: dict[str, Any], **world: Any) -> dict[str, Any]:
+    return scenario({**DISC, **robot}, *obstacles, width=size, height=size, **world)
+
+
+ACROSS = {"state": [1, 199, 0], "goal": [199, 100]}
+RANDOM = {"name": "random"}
 LARGE = {
-    "5000 obstacles, 100 robots": lambda: {
-        "world": {"width": 200, "height": 200},
-        "robot": [{**DISC, "number": 100, "state": places(100, 200), "goal": [p[:2] for p in places(100, 200)]}],
-        "obstacle": [{"number": 5000, "state": places(5000, 200), "shape": {"name": "circle"}}],
-    },
-    "5000 robots at random": lambda: {
-        "world": {"width": 400, "height": 400},
-        "robot": [{**DISC, "number": 5000, "distribution": {"name": "random"}}],
-    },
-    "1000 robots in a crowd": lambda: {
-        "world": {"width": 50, "height": 50},
-        "robot": [{**DISC, "number": 1000, "distribution": {"name": "random", "min_distance": 1.11}}],
-    },
-    "16 million cells": lambda: {
-        "world": {"width": 200, "height": 200, "obstacle_map": serpentine()},
-        "robot": [{**DISC, "state": [1, 199, 0], "goal": [199, 100]}],
-    },
-    "16 million random cells": lambda: {
-        "world": {"width": 200, "height": 200,
-                  "obstacle_map": np.random.default_rng(1).integers(0, 53, (4000, 4000), dtype=np.uint8)},
-        "robot": [{**DISC, "state": [1, 199, 0], "goal": [199, 100]}],
-    },
+    "5000 obstacles, 100 robots": lambda: large(
+        {"number": 100, "state": places(100, 200), "goal": [p[:2] for p in places(100, 200)]}, 200,
+        {"number": 5000, "state": places(5000, 200), "shape": {"name": "circle"}},
+    ),
+    "5000 robots at random": lambda: large({"number": 5000, "distribution": RANDOM}, 400),
+    "1000 robots in a crowd": lambda: large({"number": 1000, "distribution": {**RANDOM, "min_distance": 1.11}}, 50),
+    "16 million cells": lambda: large(ACROSS, 200, obstacle_map=serpentine()),
+    "16 million random cells": lambda: large(
+        ACROSS, 200, obstacle_map=np.random.default_rng(1).integers(0, 53, (4000, 4000), dtype=np.uint8)
+    ),
 }  # fmt: skip
 
 
