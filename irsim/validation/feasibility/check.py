@@ -42,6 +42,7 @@ def feasibility_findings(context: Context) -> Iterator[Finding]:
     tally = Tally(len(drawn.scenes), random=drawn.random)
     passable = context.scenario.world.collision_mode in ("unobstructed", "reactive")
     for scene in drawn.scenes:
+        tally.seed = scene.seed
         blocked_goals = set() if passable else goal_clearance.check(context, scene, movers, tally)
         if not passable:
             shared_goals.check(context, scene, movers, tally)

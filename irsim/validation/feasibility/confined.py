@@ -59,12 +59,11 @@ def _report(mover: Mover, index: int, scene: Scene, tally: Tally) -> None:
     fixes = ["a wider 'within'"] if stays else []
     fixes += [f"a smaller zone than {zones}, or no zone in 'avoid'"] if zones else []
     fixes.append("more room beside the obstacles")
-    tally.add(
+    tally.add_goal(
         "goal-unreachable",
-        mover.goal_path(index),
-        mover.record,
+        mover,
+        index,
         f"'{mover.record.name}' cannot get to {what} ({goals[index][0]:g}, {goals[index][1]:g}): its planner finds no "
         f"path that {rules}, although obstacles alone leave one",
         ", or ".join(fixes),
-        scene.seed,
     )

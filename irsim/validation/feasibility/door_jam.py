@@ -42,7 +42,7 @@ def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, l
                 known.append(mover)
     for place, width, users in sorted(shared, key=lambda one: one[1]):
         if len(users) > 1 and width < sum(sorted(2 * mover.radius for mover in users)[:2]):
-            _report(users, width, place, scene, tally)
+            _report(users, width, place, tally)
             return
 
 
@@ -57,7 +57,7 @@ def _may_jam(mover: Mover) -> bool:
     return follows and mover.record.role == "robot" and not mover.record.wander
 
 
-def _report(users: list[Mover], width: float, place: tuple[float, float], scene: Scene, tally: Tally) -> None:
+def _report(users: list[Mover], width: float, place: tuple[float, float], tally: Tally) -> None:
     first = users[0]
     others = f"{len(users) - 1} other robot{'s' * (len(users) > 2)}"
     x, y = place
@@ -69,5 +69,4 @@ def _report(users: list[Mover], width: float, place: tuple[float, float], scene:
         f"two of them have room side by side: under 'follow' with the local behavior '{_local(first)}' they can "
         "jam there",
         "local: {name: orca} in their behaviors, with which they let each other pass",
-        scene.seed,
     )

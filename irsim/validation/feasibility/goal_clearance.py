@@ -39,14 +39,13 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
             if _behind_walls(context, scene, mover, goal):
                 blocked.add((mover.record.id, index))
                 x0, y0, x1, y1 = scene.bounds
-                tally.add(
+                tally.add_goal(
                     "goal-unreachable",
-                    mover.goal_path(index),
-                    mover.record,
+                    mover,
+                    index,
                     f"'{mover.record.name}' cannot get to {_goal_term(goals, index)} ({goal[0]:g}, {goal[1]:g}): it "
                     "lies outside the walls around the world",
                     f"x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, a larger world, or no 'boundary: walls'",
-                    scene.seed,
                     serious=mover.record.role == "robot",
                 )
                 break
@@ -65,14 +64,13 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
                     "'range_low' and 'range_high' that keep randomly placed objects "
                     f"{metres(mover.shape.around)} away from the goal, or a goal outside that range"
                 )
-            tally.add(
+            tally.add_goal(
                 "goal-blocked",
-                mover.goal_path(index),
-                mover.record,
+                mover,
+                index,
                 f"'{mover.record.name}' does not fit at {what} ({goal[0]:g}, {goal[1]:g}): "
                 + _reason(context, scene, mover, goal),
                 fix,
-                scene.seed,
                 serious=mover.record.role == "robot",
             )
             break

@@ -96,13 +96,12 @@ def add_unreachable(
         fixes.append("a map with another 'seed' or a lower 'fill'")
     if outside:
         why += ". A path around the obstacles exists only outside the world, whose edge is open"
-    tally.add(
+    tally.add_goal(
         "goal-unreachable",
-        mover.goal_path(index),
-        mover.record,
+        mover,
+        index,
         f"'{name}' cannot get to {what} ({goal[0]:g}, {goal[1]:g}): {why}",
         ", or ".join(fixes),
-        scene.seed,
         serious=mover.record.role == "robot",
     )
 
@@ -153,7 +152,7 @@ def report_narrow(
         fix = other
         if missed.finer is not None:
             fix = f"planner: {{name: astar, resolution: {missed.finer:g}}} in its behavior, or {fix}"
-    tally.add("narrow-passage", mover.goal_path(index), mover.record, what, fix, scene.seed, serious=missed is not None)
+    tally.add_goal("narrow-passage", mover, index, what, fix, serious=missed is not None)
 
 
 def _driven_gaps(

@@ -221,7 +221,7 @@ def _check_passages(
     pair = (mover.record.id, index)
     if passages is None or pair not in passages.gaps:
         if mover.record.role == "robot" and _is_swept_line_blocked(scene, mover, start, to):
-            _report_unchecked(mover, index, grid, scene, tally)
+            _report_unchecked(mover, index, grid, tally)
         return True
     gap, closed = passages.gaps[pair]
     if closed:
@@ -251,17 +251,16 @@ def _is_swept_line_blocked(scene: Scene, mover: Mover, start: Point, goal: Point
     return scene.terrain.collides([core.Polygon(vertices=corners)], (0.0, 0.0, 0.0))
 
 
-def _report_unchecked(mover: Mover, index: int, grid: ClearanceGrid, scene: Scene, tally: Tally) -> None:
+def _report_unchecked(mover: Mover, index: int, grid: ClearanceGrid, tally: Tally) -> None:
     width, height = (grid.box[2] - grid.box[0], grid.box[3] - grid.box[1])
-    tally.add(
+    tally.add_goal(
         "way-unchecked",
-        mover.goal_path(index),
-        mover.record,
+        mover,
+        index,
         f"an obstacle stands between '{mover.record.name}' and its goal, and it is not known whether there is a path: "
         f"a world of {width:g} m × {height:g} m with this many corners is too large to search for paths "
         f"{metres(2 * mover.radius)} wide",
         "behavior: {name: follow}, and --simulate or a run: an event 'no_path' means that there is no path",
-        scene.seed,
         serious=False,
     )
 
@@ -293,6 +292,5 @@ def _check_wandering(grid: ClearanceGrid, scene: Scene, mover: Mover, start: Poi
         f"about {len(blocked) / len(points):.0%} of the random goals of '{mover.record.name}' lie in obstacles or "
         f"behind them, for example ({blocked[0][0]:.2f}, {blocked[0][1]:.2f}), and can never be reached",
         "range_low and range_high that span open space",
-        scene.seed,
         serious=len(blocked) > 0.5 * len(points),
     )

@@ -47,6 +47,5 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
             f"'{first.record.name}' and '{second.record.name}' at ({x:g}, {y:g}): the robot that arrives first blocks "
             "the other",
             "goals as far apart as the robots are wide, one per object: goal: [[x, y], [x, y], ...]",
-            scene.seed,
             serious=False,
         )

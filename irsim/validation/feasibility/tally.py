@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.messages.findings import Finding, hint, warning
 from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.validation.feasibility.movers import Mover
 
 __all__ = ["Tally"]
 
@@ -33,11 +34,13 @@ class Tally:
     Attributes:
         scenes: Number of scenes that are examined.
         random: Whether the scenes differ.
+        seed: Seed of the scene that is examined.
         entries: The findings so far.
     """
 
     scenes: int
     random: bool
+    seed: int = 0
     entries: dict[tuple[str, Path], _Entry] = field(default_factory=dict)
 
     def add(
@@ -47,7 +50,6 @@ class Tally:
         record: ObjectRecord,
         message: str,
         fix: str,
-        seed: int,
         *,
         serious: bool = True,
         entry: Path | None = None,
@@ -60,16 +62,19 @@ class Tally:
             record: The object.
             message: The problem.
             fix: The advice.
-            seed: Seed of the scene.
             serious: Whether it is a warning, not a hint; a serious finding replaces one that is not.
             entry: The entry of the scenario that it counts for; default: the object's.
         """
         key = code, record.path if entry is None else entry
-        kept = self.entries.setdefault(key, _Entry(path, message, fix, serious, seed))
+        kept = self.entries.setdefault(key, _Entry(path, message, fix, serious, self.seed))
         if serious and not kept.serious:
-            kept.path, kept.message, kept.fix, kept.serious, kept.seed = path, message, fix, True, seed
-        kept.scenes.add(seed)
+            kept.path, kept.message, kept.fix, kept.serious, kept.seed = path, message, fix, True, self.seed
+        kept.scenes.add(self.seed)
         kept.others.add(record.id)
+
+    def add_goal(self, code: str, mover: Mover, index: int, message: str, fix: str, *, serious: bool = True) -> None:
+        """Add a finding about one of the goals of an object."""
+        self.add(code, mover.goal_path(index), mover.record, message, fix, serious=serious)
 
     def findings(self) -> Iterator[Finding]:
         """One finding for each code and entry of the scenario."""

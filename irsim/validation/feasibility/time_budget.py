@@ -86,23 +86,23 @@ def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, l
             trap = trap_of(scene, blocked[0])
         if trap is None and mover.behavior in REACTIVE and (pocket := first_pocket(scene, route)) is not None:
             leg, trap = pocket
-            _report_trap(mover, leg, trap, scene, tally)
+            _report_trap(mover, leg, trap, tally)
         elif trap is not None and mover.behavior in REACTIVE:
-            _report_trap(mover, blocked[0], trap, scene, tally)
+            _report_trap(mover, blocked[0], trap, tally)
         elif mover.behavior in REACTIVE and getattr(mover.record.kinematics, "steered", False):
-            _check_car(mover, route, grid if isinstance(grid, ClearanceGrid) else None, scene, tally)
+            _check_car(mover, route, grid if isinstance(grid, ClearanceGrid) else None, tally)
         if blocked and mover.behavior == "dash":
-            _report_dash(mover, blocked[0], trap, scene, tally)
+            _report_dash(mover, blocked[0], trap, tally)
         elif blocked and isinstance(grid, ClearanceGrid) and measured < _MAX_MEASURED_ROUTES and not scene.rough:
             measured += 1
             around = sum(_path_length(grid, leg) if leg.blocked else math.dist(leg.start, leg.goal) for leg in route)
             if mover.behavior in REACTIVE and around > _MIN_DETOUR * length and trap is None:
-                _report_detour(mover, blocked[0], scene, around, length, tally)
+                _report_detour(mover, blocked[0], around, length, tally)
             length = max(length, around)
         if not mover.behavior or mover.record.loop or len(route) < len(scene.goals[mover.record.id]):
             continue
         needs.append(_need(mover, length))
-    _report_time(needs, limit, limit_reason, scene, tally)
+    _report_time(needs, limit, limit_reason, tally)
 
 
 def _straight(legs: list[Leg]) -> float:
@@ -140,7 +140,7 @@ def _need(mover: Mover, length: float) -> _Need:
     return _Need(mover, length, moving, rate if moving > 1.01 * _time(mover, length) else None)
 
 
-def _report_time(needs: list[_Need], limit: float, limit_reason: str, scene: Scene, tally: Tally) -> None:
+def _report_time(needs: list[_Need], limit: float, limit_reason: str, tally: Tally) -> None:
     """Report robots that need more time than the limit, or nearly as much; one finding if the limit is written."""
     short = [need for need in needs if need.total > _TIGHT_TIME_SHARE * limit]
     short.sort(key=lambda need: (-need.total, need.mover.record.id))
@@ -149,15 +149,13 @@ def _report_time(needs: list[_Need], limit: float, limit_reason: str, scene: Sce
         others = sum(need.total > limit for need in short) - 1
         more = f"; {others} more robot{'s need' if others > 1 else ' needs'} more than that" if others > 0 else ""
         for need in short[:1]:
-            _add_short(need, ("world", "time_limit"), limit, limit_reason + more, enough, scene, tally)
+            _add_short(need, ("world", "time_limit"), limit, limit_reason + more, enough, tally)
         return
     for need in short:
-        _add_short(need, need.mover.path, limit, limit_reason, enough, scene, tally)
+        _add_short(need, need.mover.path, limit, limit_reason, enough, tally)
 
 
-def _add_short(
-    need: _Need, path: Path, limit: float, limit_reason: str, enough: float, scene: Scene, tally: Tally
-) -> None:
+def _add_short(need: _Need, path: Path, limit: float, limit_reason: str, enough: float, tally: Tally) -> None:
     late = need.total > limit
     record, rate = need.mover.record, need.rate
     key = "appear_time" if record.appear_time > record.start_time else "start_time"
@@ -171,7 +169,6 @@ def _add_short(
         f"at {need.mover.speed:.3g} m/s{wait}{slowly} and "
         + (limit_reason if late else f"{limit_reason}, which leaves no time for turning and giving way"),
         f"time_limit: {enough:g}, or {'a faster robot' if rate is None else 'a larger acce'}",
-        scene.seed,
         serious=late,
         entry=path if path[0] == "world" else None,
     )
@@ -194,26 +191,25 @@ def _least_time(mover: Mover, length: float, rate: float) -> float:
     return (top - begin) / rate + (length - ramp) / top
 
 
-def _report_trap(mover: Mover, leg: Leg, trap: Trap, scene: Scene, tally: Tally) -> None:
+def _report_trap(mover: Mover, leg: Leg, trap: Trap, tally: Tally) -> None:
     x, y = trap.place
     where = (
         f"in front of a wall {metres(trap.length)} long"
         if trap.gap is None
         else f"in front of two circles {metres(trap.gap)} apart, too near for it to pass between them"
     )
-    tally.add(
+    tally.add_goal(
         "needs-planning",
-        mover.goal_path(leg.index),
-        mover.record,
+        mover,
+        leg.index,
         f"'{mover.behavior}' avoids nearby objects but plans no path: '{mover.record.name}' is likely to stop near "
         f"({x:.2f}, {y:.2f}), {where}, behind which its goal ({leg.goal[0]:g}, {leg.goal[1]:g}) lies",
         f"behavior: {{name: follow, planner: astar, local: {mover.behavior}}}, or waypoints",
-        scene.seed,
         serious=False,
     )
 
 
-def _check_car(mover: Mover, route: list[Leg], grid: ClearanceGrid | None, scene: Scene, tally: Tally) -> None:
+def _check_car(mover: Mover, route: list[Leg], grid: ClearanceGrid | None, tally: Tally) -> None:
     """Report a car that has no planner and has to drive around something static, or to a goal close to it."""
     name = mover.record.name
     why = f"'{mover.behavior}' alone plans no path for the car '{name}', which cannot turn on the spot: "
@@ -225,13 +221,12 @@ def _check_car(mover: Mover, route: list[Leg], grid: ClearanceGrid | None, scene
         if near is None:
             return
         leg, why = near, why + "it gets slower and slower near the obstacle at "
-    tally.add(
+    tally.add_goal(
         "needs-planning",
-        mover.goal_path(leg.index),
-        mover.record,
+        mover,
+        leg.index,
         f"{why}({leg.goal[0]:g}, {leg.goal[1]:g})",
         follow_text(mover.record),
-        scene.seed,
         serious=False,
     )
 
@@ -248,12 +243,12 @@ def _creeps(mover: Mover, leg: Leg, grid: ClearanceGrid) -> bool:
     return bool(room + record.goal_threshold < _CREEP_SPEED * options.timeHorizonObst)
 
 
-def _report_dash(mover: Mover, leg: Leg, trap: Trap | None, scene: Scene, tally: Tally) -> None:
+def _report_dash(mover: Mover, leg: Leg, trap: Trap | None, tally: Tally) -> None:
     name = mover.record.name
-    tally.add(
+    tally.add_goal(
         "dash-into-obstacle",
-        mover.goal_path(leg.index),
-        mover.record,
+        mover,
+        leg.index,
         f"'{name}' dashes straight to ({leg.goal[0]:g}, {leg.goal[1]:g}) without avoiding anything: an obstacle stands "
         "on that line",
         "behavior: {name: follow} plans a path around it; "
@@ -262,20 +257,18 @@ def _report_dash(mover: Mover, leg: Leg, trap: Trap | None, scene: Scene, tally:
             if trap is None
             else "rvo, sfm and orca stay caught in this dead end"
         ),
-        scene.seed,
         serious=False,
     )
 
 
-def _report_detour(mover: Mover, leg: Leg, scene: Scene, around: float, length: float, tally: Tally) -> None:
+def _report_detour(mover: Mover, leg: Leg, around: float, length: float, tally: Tally) -> None:
     name = mover.record.name
-    tally.add(
+    tally.add_goal(
         "needs-planning",
-        mover.goal_path(leg.index),
-        mover.record,
+        mover,
+        leg.index,
         f"'{mover.behavior}' avoids nearby objects but plans no path: '{name}' is likely to get stuck on the "
         f"path of {metres(around)} around the obstacles (straight line: {metres(length)})",
         f"behavior: {{name: follow, planner: astar, local: {mover.behavior}}}, or waypoints",
-        scene.seed,
         serious=False,
     )

@@ -39,11 +39,11 @@ def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, l
             if leg.blocked or pose is None:
                 break
             if needs_reverse(mover.record, pose, leg.goal):
-                _report(mover, leg, scene, tally, missed=None)
+                _report(mover, leg, tally, missed=None)
                 break
             pose, missed = _drive(mover, pose, leg.goal, context.scenario.world.step_time)
             if missed is not None:
-                _report(mover, leg, scene, tally, missed=missed)
+                _report(mover, leg, tally, missed=missed)
                 break
 
 
@@ -84,7 +84,7 @@ def _drive(mover: Mover, pose: Pose, goal: Sequence[float], step_time: float) ->
     return None, None
 
 
-def _report(mover: Mover, leg: Leg, scene: Scene, tally: Tally, *, missed: float | None) -> None:
+def _report(mover: Mover, leg: Leg, tally: Tally, *, missed: float | None) -> None:
     record = mover.record
     goal = f"({leg.goal[0]:g}, {leg.goal[1]:g})"
     why = (
@@ -93,11 +93,10 @@ def _report(mover: Mover, leg: Leg, scene: Scene, tally: Tally, *, missed: float
         else f"it gets within {metres(missed)} of {goal} and then stands still, as the goal lies inside its turning "
         f"circle of radius {metres(turning_radius(record))} by then"
     )
-    tally.add(
+    tally.add_goal(
         "turning-circle",
-        mover.goal_path(leg.index),
-        record,
+        mover,
+        leg.index,
         f"'{record.name}' needs reverse, which 'vel_min' rules out: {why}",
         f"{reverse_fix(record)} lets it back up, or a goal farther ahead, or more steering in 'vel_max' and 'vel_min'",
-        scene.seed,
     )
