@@ -35,7 +35,6 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], text: str | None, *, st
     """
     if not diagnostics:
         return
-
     stream = sys.stderr if stderr else sys.stdout
     print(format_diagnostics(diagnostics, text, color=has_colors(stream)), file=stream)
 
@@ -51,7 +50,6 @@ def print_findings(findings: Sequence[Finding], file: str, text: str | None = No
     """
     if not findings:
         return
-
     diagnostics = [
         Diagnostic(
             code=finding.code,
@@ -76,10 +74,7 @@ def import_user_modules(names: Sequence[str] | None) -> None:
     Raises:
         UserImportError: A module raised an error.
     """
-    if not names:
-        return
-
-    for name in names:
+    for name in names or ():
         try:
             import_modules([name])
         except Exception as error:
@@ -88,10 +83,7 @@ def import_user_modules(names: Sequence[str] | None) -> None:
 
 def limits_for(max_objects: int | None) -> Limits | None:
     """Return the limits for reading a scenario with another number of objects; None stands for the default limits."""
-    if max_objects is None:
-        return None
-
-    return Limits(objects=max_objects, robots=max_objects)
+    return None if max_objects is None else Limits(objects=max_objects, robots=max_objects)
 
 
 def not_found(file: str, message: str) -> ValidationReport:

@@ -16,7 +16,7 @@ from typing import Any, NoReturn, ParamSpec, TypeVar
 
 import typer
 
-from irsim.cli.output import silence_stdout
+from irsim.cli.output import print_error, silence_stdout
 from irsim.common.text import clean
 from irsim.diagnostics.errors import IrsimError, ScenarioError, ScenarioNotFoundError
 
@@ -98,8 +98,6 @@ def _report(error: BaseException, *, as_json: bool) -> int:
 
         print_diagnostics(error.diagnostics, error.source, stderr=True)
     else:
-        from irsim.cli.output import print_error
-
         print_error(code, message)
     if as_json:
         data: dict[str, object] = {"code": code, "message": message}
