@@ -6,13 +6,12 @@ Key events come from the window of the figure or from a global listener (package
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from irsim.common.log import Logger
+from irsim.common.log import Logger
 
 __all__ = ["KEY_TABLE", "KeyboardControl"]
 
@@ -27,6 +26,8 @@ _AXES = {
     "e": ("yaw", -1),
 }
 """Key -> (axis of the command, sign)."""
+_FLAGS = {"r": "reset_flag", "l": "reload_flag", "v": "save_figure_flag", "escape": "quit_flag"}
+"""Key -> flag of the environment, which acts on it with the next frame or step."""
 KEY_TABLE = (
     ("w / s", "forwards / backwards"),
     ("a / d", "turn left / right; sideways for omni drives"),
@@ -199,9 +200,7 @@ class KeyboardControl:
         if self.env_ref is not None:
             return self.env_ref.logger
         if self._own_logger is None:
-            from irsim.common.log import Logger as Own
-
-            self._own_logger = Own()
+            self._own_logger = Logger()
         return self._own_logger
 
     def _drives(self) -> bool:
@@ -255,14 +254,8 @@ class KeyboardControl:
         env = self.env_ref
         if env is None:
             return
-        if key == "r":
-            env.reset_flag = True
-        elif key == "l":
-            env.reload_flag = True
-        elif key == "v":
-            env.save_figure_flag = True
-        elif key == "escape":
-            env.quit_flag = True
+        if key in _FLAGS:
+            setattr(env, _FLAGS[key], True)
         elif key == " ":
             if env.pause_flag:
                 env.resume()

@@ -15,6 +15,11 @@ __all__ = ["SocialForceModelBatch", "social_force_model"]
 _UNLIMITED_SPEED_M_S = 1e9
 _FORCE_PERIOD_S = 1e-3
 """Period [s] over which a force is measured as a change of velocity."""
+_NO_OPTIONS = (
+    *("self", "states", "neighbor_states", "line_obs_list", "social_groups", "step_time"),
+    "neighbor_range",  # an option by another name
+)
+"""Arguments of the model that are no options of ``sfm``."""
 
 
 class SocialForceModelBatch:
@@ -59,26 +64,9 @@ class SocialForceModelBatch:
         force_factor_gaze: float = 3.0,
         gaze_vision_angle: float = 90.0,
     ) -> None:
+        given = {name: value for name, value in locals().items() if name not in _NO_OPTIONS}
+        self.parameters: dict[str, Any] = {**given, "neighbor_threshold": neighbor_range}
         self.step_time = step_time
-        self.parameters: dict[str, Any] = {
-            "vmax": vmax,
-            "relaxation_time": relaxation_time,
-            "force_factor_desired": force_factor_desired,
-            "force_factor_social": force_factor_social,
-            "force_factor_obstacle": force_factor_obstacle,
-            "sigma_obstacle": sigma_obstacle,
-            "lambda_importance": lambda_importance,
-            "gamma": gamma,
-            "n_angular": n_angular,
-            "n_velocity": n_velocity,
-            "neighbor_threshold": neighbor_range,
-            "safety_radius": safety_radius,
-            "force_factor_coherence": force_factor_coherence,
-            "force_factor_group_repulsion": force_factor_group_repulsion,
-            "group_repulsion_threshold": group_repulsion_threshold,
-            "force_factor_gaze": force_factor_gaze,
-            "gaze_vision_angle": gaze_vision_angle,
-        }
         self.update(states, neighbor_states, line_obs_list, social_groups)
 
     def update(
@@ -191,25 +179,8 @@ class social_force_model:
         neighbor_range: float = 10.0,
         safety_radius: float = 0.0,
     ) -> None:
-        self._model = SocialForceModelBatch(
-            [state],
-            neighbor_list,
-            line_obs_list,
-            None,
-            vmax,
-            step_time,
-            relaxation_time,
-            force_factor_desired,
-            force_factor_social,
-            force_factor_obstacle,
-            sigma_obstacle,
-            lambda_importance,
-            gamma,
-            n_angular,
-            n_velocity,
-            neighbor_range,
-            safety_radius,
-        )
+        given = {name: value for name, value in locals().items() if name not in ("self", "state", "neighbor_list")}
+        self._model = SocialForceModelBatch([state], neighbor_list, **given)
 
     def update(
         self,
