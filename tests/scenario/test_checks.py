@@ -323,15 +323,13 @@ def test_custom_behaviors_keep_their_names_apart() -> None:
 
 
 def test_invalid_polygons_are_repaired_when_lenient() -> None:
-    bowtie = obstacle(shape={"name": "polygon", "vertices": [[0, 0], [2, 2], [2, 0], [0, 2]]}, state=[4, 4, 0])
-    scenario = read(bowtie).scenario
-    assert scenario is not None
-    shape: Any = scenario.objects[0].shape
-    assert shape.name == "compound"
-    assert len(shape.parts) == 2
-    spike = [[0, 0], [2, 0], [2, 2], [3, 3], [2, 2], [0, 2]]
-    scenario = read(obstacle(shape={"name": "polygon", "vertices": spike}, state=[4, 4, 0])).scenario
-    assert scenario is not None
-    shape = scenario.objects[0].shape
-    assert shape.name == "polygon"
-    assert sorted(map(tuple, shape.vertices)) == [(0, 0), (0, 2), (2, 0), (2, 2)]
+    def repaired(*vertices: list[float]) -> Any:
+        scenario = read(obstacle(shape={"name": "polygon", "vertices": [*vertices]}, state=[4, 4, 0])).scenario
+        assert scenario is not None
+        return scenario.objects[0].shape
+
+    bowtie = repaired([0, 0], [2, 2], [2, 0], [0, 2])
+    assert (bowtie.name, len(bowtie.parts)) == ("compound", 2)
+    spike = repaired([0, 0], [2, 0], [2, 2], [3, 3], [2, 2], [0, 2])
+    assert spike.name == "polygon"
+    assert sorted(map(tuple, spike.vertices)) == [(0, 0), (0, 2), (2, 0), (2, 2)]

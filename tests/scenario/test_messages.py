@@ -93,28 +93,18 @@ def test_long_lines_are_cut_around_the_place() -> None:
     assert quoted[carets.index("^") : carets.index("^") + 5] == "widht"
 
 
-@pytest.mark.parametrize(
-    ("text", "unit", "value"),
-    [
-        ("1e3", "m", 1000.0),
-        ("-.5", "m", -0.5),
-        (" 3 ", "m", 3.0),
-        ("pi", "rad", 3.141592653589793),
-        ("-pi/2", "rad", -1.5707963267948966),
-        ("2*pi", "rad", 6.283185307179586),
-        ("np.pi", "rad", 3.141592653589793),
-        ("3 * pi / 4", "rad", 2.356194490192345),
-        ("1/4", "m", 0.25),
-        ("5 m", "m", 5.0),
-        ("50cm", "m", 0.5),
-        ("90 deg", "rad", 1.57079632679),
-        ("36 km/h", "m/s", 10.0),
-        ("100 ms", "s", 0.1),
-        ("pi/0", "rad", None),
-        *((text, "m", None) for text in ("5 apples", "inf", "1e999", "1/0", "hello", "")),
-    ],
-)
-def test_numbers_written_as_text(text: str, unit: str, value: float | None) -> None:
+WRITTEN: dict[str, dict[str, float | None]] = {
+    "m": {"1e3": 1000.0, "-.5": -0.5, " 3 ": 3.0, "1/4": 0.25, "5 m": 5.0, "50cm": 0.5}
+    | dict.fromkeys(("5 apples", "inf", "1e999", "1/0", "hello", "")),
+    "rad": {"pi": math.pi, "-pi/2": -math.pi / 2, "2*pi": 2 * math.pi, "np.pi": math.pi, "3 * pi / 4": 0.75 * math.pi}
+    | {"90 deg": math.pi / 2, "pi/0": None},
+    "m/s": {"36 km/h": 10.0},
+    "s": {"100 ms": 0.1},
+}
+
+
+@pytest.mark.parametrize(("unit", "text", "value"), [(u, *row) for u, rows in WRITTEN.items() for row in rows.items()])
+def test_numbers_written_as_text(unit: str, text: str, value: float | None) -> None:
     answer = read_number(text, unit).value
     assert answer == (None if value is None else pytest.approx(value))
 
