@@ -54,9 +54,14 @@ def tool(workspace: Path, name: str, **arguments: Any) -> bytes:
 
 
 @pytest.fixture
-def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    for name in templates.names():
-        shutil.copytree(templates.scenario_file(name).parent, tmp_path / name)
+def name() -> str:
+    return "crossing"
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current directory, with the template that the test is about."""
+    shutil.copytree(templates.scenario_file(name).parent, tmp_path / name)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
