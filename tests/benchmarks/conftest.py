@@ -45,13 +45,17 @@ def fragile(simulation, *rest, plain=episode.horizon_of):
         os.kill(os.getpid(), signal.SIGKILL)
     return plain(simulation, *rest)
 
-episode.horizon_of = together.horizon_of = fragile
+if {here} or os.getpid() != {mine}:
+    episode.horizon_of = together.horizon_of = fragile
 """
 
 
-def write_fragile(folder: Path, name: str, seeds: range, *, always: bool) -> None:
-    """Write a module with which other processes die in some episodes, always or the first time."""
-    code = FRAGILE.format(folder=str(folder), mine=os.getpid(), seeds=seeds, always=always)
+def write_fragile(folder: Path, name: str, seeds: range, *, always: bool, here: bool = True) -> None:
+    """Write a module with which other processes die in some episodes, always or the first time.
+
+    With ``here`` this process, which must forget the module afterwards, is slow, so that the others have the work.
+    """
+    code = FRAGILE.format(folder=str(folder), mine=os.getpid(), seeds=seeds, always=always, here=here)
     (folder / f"{name}.py").write_text(code, encoding="utf-8")
 
 

@@ -102,7 +102,7 @@ def test_processes_that_are_killed_in_the_middle_change_nothing(
     folder: Path, cluster: LocalCluster, capfd: pytest.CaptureFixture[str]
 ) -> None:
     local = irsim.benchmark("scene.yaml", ["dash", "orca"], SEEDS, workers=1, steps=100)
-    write_fragile(folder, "fragile", range(3, SEEDS, 9), always=False)
+    write_fragile(folder, "fragile", range(3, SEEDS, 9), always=False, here=False)
     result = irsim.benchmark(
         "scene.yaml", ["dash", "orca"], SEEDS, cluster=cluster.address, steps=100, imports=["fragile"]
     )
@@ -114,7 +114,7 @@ def test_processes_that_are_killed_in_the_middle_change_nothing(
 def test_an_episode_in_which_every_process_dies_is_given_up_and_the_others_are_kept(
     folder: Path, cluster: LocalCluster
 ) -> None:
-    write_fragile(folder, "poisonous", range(7, 8), always=True)
+    write_fragile(folder, "poisonous", range(7, 8), always=True, here=False)
     with pytest.raises(WorkerError, match=r"3 processes died while they ran scene\.yaml, seed 7, with dash"):
         irsim.benchmark("scene.yaml", "dash", 12, cluster=cluster.address, steps=50, imports=["poisonous"], log="log")
     assert Path("dash-7").read_text().count("x") >= 3
