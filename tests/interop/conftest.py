@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from tests.bridges.conftest import workspace  # noqa: F401  # fixture
+from tests.bridges.conftest import workspace  # noqa: F401  # fixtures
+from tests.bridges.splats.conftest import site  # noqa: F401
 
 REQUIRED = os.environ.get("IRSIM_INTEROP") == "required"
 

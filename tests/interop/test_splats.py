@@ -12,7 +12,6 @@ import shutil
 import threading
 import urllib.parse
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,15 +21,14 @@ from PIL import Image
 
 import irsim
 from irsim.bridges.frames import axes_of, camera_pose
-from irsim.bridges.maps.importing import import_map, read_occupancy
-from irsim.bridges.maps.sidecar import MapSidecar, read_sidecar
+from irsim.bridges.maps.importing import read_occupancy
+from irsim.bridges.maps.sidecar import read_sidecar
 from irsim.bridges.maps.source import ImportLimits, ImportOptions
 from irsim.bridges.splats.page import write_page
 from irsim.bridges.splats.reading import read_splats
 from irsim.bridges.splats.render import View, picture
-from irsim.runs import Run, open_run
 from tests.bridges.maps.scenes import flat
-from tests.bridges.splats.conftest import ROBOT
+from tests.bridges.splats.conftest import Site
 from tests.bridges.splats.scenes import FIELDS, room, write_ply
 from tests.browser import NAMES, until
 
@@ -43,41 +41,17 @@ EYE = (1.0, 1.0, 0.6)
 EYE_HEIGHT = 1.3
 
 
-@dataclass(frozen=True)
-class Site:
-    """A room of a hundred thousand splats in the frame of COLMAP with y down, its map, and a run."""
-
-    scene: Path
-    sidecar: MapSidecar
-    run: Run
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
-    folder = tmp_path_factory.mktemp("site")
-    scene = write_ply(folder / "room.ply", room(axes=axes_of("colmap"), shift=(0.3, 1.2, -0.5)).columns)
-    import_map(scene, folder / "room.yaml", up="-y")
-    text = (folder / "room.yaml").read_text(encoding="utf-8") + ROBOT
-    # The room begins at x, y = -0.5, -0.3 of irsim, which keeps the horizontal axes of the scene.
-    for before, after in (("[1.5, 1, 0]", "[1, 0.7, 0]"), ("[5, 1.5, 0]", "[4.5, 1.2, 0]"),
-                          ("[5.5, 4.2, 0]", "[5, 3.9, 0]"), ("[3.5, 4.4, 0]", "[3, 4.1, 0]")):  # fmt: skip
-        assert before in text
-        text = text.replace(before, after)
-    (folder / "room.yaml").write_text(text, encoding="utf-8")
-    irsim.run(folder / "room.yaml", seed=1, record=folder / "run")
-    return Site(scene, read_sidecar(folder / "room.yaml"), open_run(folder / "run"))
-
-
 def test_pycolmap_reads_our_cameras_with_equal_centers_and_directions(site: Site, tmp_path: Path) -> None:
     pycolmap = pytest.importorskip("pycolmap")
     irsim.export_run(site.run, tmp_path / "model", to="colmap", options={"every": 3, "height": 1.1, "fov": 80.0})
     model = pycolmap.Reconstruction(str(tmp_path / "model"))
     poses = site.run.trace().pose[::3, site.run.index_of("rover")]
     assert model.num_images() == len(poses)
-    turn = site.sidecar.T_scene_from_irsim[:3, :3]
+    sidecar = read_sidecar(site.scenario)
+    turn = sidecar.T_scene_from_irsim[:3, :3]
     for image in model.images.values():
         x, y, yaw = poses[int(image.name.split(".")[0]) // 3]
-        center = site.sidecar.to_scene(np.array([[x, y]]), height=1.1)[0]
+        center = sidecar.to_scene(np.array([[x, y]]), height=1.1)[0]
         np.testing.assert_allclose(image.projection_center(), center, atol=1e-9)
         ahead = turn @ [math.cos(yaw), math.sin(yaw), 0]
         np.testing.assert_allclose(image.viewing_direction(), ahead, atol=1e-9)
@@ -185,7 +159,7 @@ def test_the_page_and_the_picture_of_the_cpu_agree(site: Site, page: Any) -> Non
     ready(page)
     page.evaluate("() => document.querySelectorAll('header, footer').forEach(part => part.style.display = 'none')")
     page.wait_for_timeout(500)
-    matrix = camera_pose(np.array(EYE), "colmap", EYE_HEIGHT, transform=site.sidecar.T_scene_from_irsim)
+    matrix = camera_pose(np.array(EYE), "colmap", EYE_HEIGHT, transform=read_sidecar(site.scenario).T_scene_from_irsim)
     decibels = ratio(shot(page), our_picture(site.scene, matrix))
     print(f"page against CPU: {decibels:.1f} dB")
     assert decibels > 40
@@ -239,12 +213,12 @@ def spark_picture(browser: Any, folder: Path, scene: Path, matrix: np.ndarray) -
 
 @pytest.mark.parametrize("harmonics", [False, True])
 def test_the_picture_of_the_cpu_is_that_of_spark(site: Site, browser: Any, spark_files: Path, harmonics: bool) -> None:
-    columns, fields = room(spacing=0.09, axes=axes_of("colmap"), shift=(0.3, 1.2, -0.5)).columns, FIELDS
+    columns, fields = room(spacing=0.09, axes=axes_of("colmap"), shift=(0.0, 1.2, 0.0)).columns, FIELDS
     if harmonics:  # colors that change with the direction of view, alike for all splats: Spark stores them coarsely
         rest = np.tile(np.random.default_rng(5).normal(0, 0.1, 45), (len(columns), 1))
         columns, fields = np.column_stack([columns, rest]), (*FIELDS, *(f"f_rest_{number}" for number in range(45)))
     scene = write_ply(Path("seen.ply"), columns, fields=fields)
-    pose, transform = np.array(EYE), site.sidecar.T_scene_from_irsim
+    pose, transform = np.array(EYE), read_sidecar(site.scenario).T_scene_from_irsim
     theirs = spark_picture(browser, spark_files, scene, camera_pose(pose, "opengl", EYE_HEIGHT, transform=transform))
     ours = our_picture(scene, camera_pose(pose, "colmap", EYE_HEIGHT, transform=transform))
     decibels = ratio(ours, theirs)
