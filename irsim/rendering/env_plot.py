@@ -14,6 +14,7 @@ from PIL import Image
 
 from irsim.diagnostics.diagnostic import nearest
 from irsim.graphics.encoding.pixels import to_image
+from irsim.graphics.figure import window
 from irsim.graphics.figure.figure import SceneFigure, fitting_size, inches
 from irsim.graphics.figure.overlay import Overlay
 from irsim.graphics.figure.pictures import Pictures
@@ -146,10 +147,8 @@ class EnvPlot(PlotSteps):
         if self._figure is None:
             entry = self.list_in_pyplot()
             if self._display:
-                from irsim.graphics.figure.window import open_window
-
                 name, current = self.env.simulation.scenario.name, active()
-                self._window = open_window(self._size, self._dpi, full=self._full, title=name)
+                self._window = window.open_window(self._size, self._dpi, full=self._full, title=name)
                 if self._window is not None:
                     entry.give_way(self._window.figure.canvas)
                     if current is not None and current is not entry:
