@@ -10,11 +10,14 @@ from rich.text import Text
 
 from irsim.bridges.export.episode import CHOICES
 from irsim.bridges.export.export import export_run
+from irsim.bridges.export.registry import format_names
 from irsim.cli.options import Json
 from irsim.cli.output import console, print_json, progress
 from irsim.policies.converters.convert import parse_options
 
 __all__ = ["export"]
+
+_FORMATS = format_names()
 
 
 def export(
@@ -30,8 +33,8 @@ def export(
         str | None,
         typer.Option(
             metavar="FORMAT",
-            help="Name of a format: colmap, commonroad, csv, isaac_people, mcap, minari, mjcf, nerfstudio, npz, "
-            "openscenario, parquet, poses, rosbag2, sdf or usd. Default: as the suffix of the file says.",
+            help=f"Name of a format: {', '.join(_FORMATS[:-1])} or {_FORMATS[-1]}. Default: as the suffix of the file "
+            "says.",
             show_default=False,
         ),
     ] = None,
@@ -74,7 +77,7 @@ def export(
 ) -> None:
     """Write recorded runs for other programs: tables, ROS 2 bags, datasets, cameras, scenes of other simulators.
 
-    All but CSV and NumPy files need libraries, which extras install; without them the message says how.
+    Some formats need libraries, which extras install; without them the message says how.
     """
     chosen: str | list[str] | None = objects
     if objects is not None and objects not in CHOICES:

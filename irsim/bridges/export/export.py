@@ -38,11 +38,9 @@ def export_run(
 ) -> ExportResult:
     """Write recorded runs as a file that other tools open.
 
-    Formats are ``parquet`` and ``csv`` (a table with one row per step and object), ``npz`` (arrays of shape (steps,
-    objects, …)), ``mcap`` (ROS 2 messages), ``minari`` (a folder: a dataset for learning, one episode per run and
-    robot), ``usd`` (an animated stage of OpenUSD), and for cameras that look where robots go ``colmap``, ``nerfstudio``
-    (folders) and ``poses`` (lines of JSON). Runs are read piece by piece, so that they need not fit in memory. A format
-    that needs a library says which extra installs it: ``pip install 'irsim-mcp[records]'``.
+    ``irsim describe exports`` names the formats and the programs that they are for. Tables and bags are read piece by
+    piece, so that runs need not fit in memory. A format that needs a library says which extra installs it:
+    ``pip install 'irsim-mcp[records]'``.
 
     Args:
         run: Id of a run, its folder, or ``last``; or several of them for a table or a dataset.

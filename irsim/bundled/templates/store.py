@@ -201,6 +201,10 @@ def load(name: str) -> Template:
             f"there is no template {name!r}; choose one of {', '.join(known)}.",
             suggestion(name, known, None),
         )
+    return _read(name)
+
+
+def _read(name: str) -> Template:
     file = scenario_file(name)
     described = resources.read_yaml(file.with_name("template.yaml").read_text(encoding="utf-8"))
     text = file.read_text(encoding="utf-8")
@@ -209,7 +213,7 @@ def load(name: str) -> Template:
 
 def load_all() -> list[Template]:
     """All templates, by name."""
-    return [load(name) for name in names()]
+    return [_read(name) for name in names()]
 
 
 def find(words: Iterable[str], *, every: bool = False) -> list[Template]:

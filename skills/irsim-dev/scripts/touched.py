@@ -25,7 +25,7 @@ STEPS = (
     (r"irsim/core/.*\.(cpp|hpp)|.*\.cmake", "pip install -e ."),
     (MODELS, "irsim schema"),
     (
-        rf"{MODELS}|irsim/diagnostics/.*|irsim/(api|benchmarks|env|lookup|metrics|objects|results)/.*|templates/.*",
+        rf"{MODELS}|irsim/diagnostics/.*|irsim/(api|benchmarks|bridges|env|lookup|metrics|objects|results)/.*|templates/.*",
         "python -m irsim.lookup.reference",
     ),
     (r"irsim/cli/.*", "python -m irsim.cli.overview README.md"),
