@@ -25,7 +25,7 @@ def test_one_idea_has_one_home(find: Callable[[], list[str]], most: int) -> None
 
 
 def test_imports_inside_functions_are_few() -> None:
-    assert house.function_imports() <= 335
+    assert house.function_imports() <= 200
 
 
 @pytest.mark.parametrize(("name", "most"), [("changes of box", 110), ("names of a robot", 65)])
