@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     __version__: str
 
 _PACKAGES = frozenset({"config", "env", "gui", "lib", "msg", "util", "version", "world"})
-"""Packages of IR-SIM that are attributes of ``irsim`` whether somebody has imported them or not."""
+"""Packages of IR-SIM that are attributes of ``irsim`` whether a script has imported them or not."""
 
 __all__ = [
     "Batch",

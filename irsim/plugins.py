@@ -5,7 +5,7 @@ from irsim.plugins import SENSORS, Meters, SensorOptions
 ```
 
 An installed package offers its component through an entry point of the group ``irsim.<kind>``, such as
-``irsim.sensors``. A policy, which is no part of a scenario, has the group ``irsim.policies``. The names below stay
+``irsim.sensors``. A policy, which does not belong to a scenario, has the group ``irsim.policies``. The names below stay
 where they are when the rest of irsim is rearranged.
 """
 

@@ -55,10 +55,10 @@ def until(page: Any, condition: str, seconds: float = 15.0) -> None:
 def chromium() -> Iterator[Any]:
     from playwright.sync_api import sync_playwright
 
-    found = os.environ.get("IRSIM_CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
-    assert found is not None, "no Chromium on PATH and none named by IRSIM_CHROMIUM; `nox -s browser` brings one"
+    program = os.environ.get("IRSIM_CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
+    assert program is not None, "no Chromium on PATH, and IRSIM_CHROMIUM is not set; `nox -s browser` brings one"
     with sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=found, args=SWITCHES)
+        browser = driver.chromium.launch(executable_path=program, args=SWITCHES)
         yield browser
         browser.close()
 

@@ -1,4 +1,4 @@
-"""What all tests share: examples, order, registries that are left as they were found, work that is done once."""
+"""Shared by all tests: examples, order, registries that are left as they were found, work that is done once."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tests.browser import chromium, watched  # noqa: F401  # fixtures
 from tests.warm import schema
 
 ROOT = Path(__file__).resolve().parents[1]
-# How fast a machine draws and runs examples is no property of the code.
+# How fast a machine draws and runs examples does not belong to the code.
 settings.register_profile("irsim", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("irsim")
 
@@ -64,7 +64,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def _turns(items: list[pytest.Item], day: int) -> Iterator[int]:
-    """Days until it is the turn of each test: those of one function have different days, as far as there are days."""
+    """Days until it is the turn of each test: tests of one function have different days, as far as there are days."""
     before: Counter[str] = Counter()
     for item in items:
         if mark := item.get_closest_marker("rotates"):

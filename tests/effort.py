@@ -15,7 +15,7 @@ THOROUGH = os.environ.get("IRSIM_TESTS") == "thorough"
 
 
 def examples(count: int) -> int:
-    """What to give ``settings(max_examples=…)`` for a property that is to hold in this number of examples."""
+    """The argument of ``settings(max_examples=…)`` for a property that is to hold in this number of examples."""
     return count if THOROUGH else count // 4
 
 

@@ -71,7 +71,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 
 def commands(page: Path) -> list[list[str]]:
-    """The commands on a page, or on that of an example, in order."""
+    """The commands on a page, or on the page of an example, in order."""
     page = page / "elements.md" if page.is_dir() else page
     text = page.read_text(encoding="utf-8")
     return [shlex.split(line) for block in fences(text, "bash") for line in block.splitlines()]

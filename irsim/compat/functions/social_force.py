@@ -19,7 +19,7 @@ _NO_OPTIONS = (
     *("self", "states", "neighbor_states", "line_obs_list", "social_groups", "step_time"),
     "neighbor_range",  # an option by another name
 )
-"""Arguments of the model that are no options of ``sfm``."""
+"""Arguments of the model which ``sfm`` does not have among its options."""
 
 
 class SocialForceModelBatch:
