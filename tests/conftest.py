@@ -27,6 +27,7 @@ from tests.browser import chromium, watched  # noqa: F401  # fixtures
 from tests.warm import schema
 
 ROOT = Path(__file__).resolve().parents[1]
+pytest.register_assert_rewrite("tests.core.worlds")  # here, before any module of tests is imported
 # How fast a machine draws and runs examples does not belong to the code.
 settings.register_profile("irsim", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("irsim")

@@ -180,13 +180,13 @@ class _GridPlanner(PathPlanner):
 class AStarPlanner(_GridPlanner):
     """Finds the shortest path over the eight neighbours of each cell; the start may be occupied."""
 
-    _options = functools.partial(core.AstarOptions, resolution=0.0)
+    _options = staticmethod(functools.partial(core.AstarOptions, resolution=0.0))
 
 
 class JPSPlanner(_GridPlanner):
     """Finds paths as short as A* by jumping over cells without a choice; the start must be free."""
 
-    _options = functools.partial(core.JpsOptions, resolution=0.0)
+    _options = staticmethod(functools.partial(core.JpsOptions, resolution=0.0))
 
 
 class RRT(PathPlanner):

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-pytest.register_assert_rewrite("tests.core.worlds")
-
 
 def pytest_itemcollected(item: pytest.Item) -> None:
     """Numbers of the core are the same on every Python, but for what its bindings tell of Python and NumPy."""
