@@ -23,6 +23,8 @@ Triangles: TypeAlias = NDArray[Any]
 """(T, 3, 3) corners x, y, z [m] of triangles, floats of single or double precision; z up."""
 _MAX_COLUMNS = 1 << 26
 """Columns that a key of a piece has room for."""
+_LEAST_CELLS = 16
+"""Least bound on cells: a grid has at least three columns and rows, whatever its resolution."""
 _CHUNK = 1 << 17
 """Pairs of triangle and cell that are worked on at once; their arrays fit into the cache of a processor."""
 
@@ -95,7 +97,7 @@ def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int, hint
     """
     size = np.asarray(high, dtype=np.float64) - low
     nx, ny = (size[k] / resolution + 3 for k in range(2))
-    limit = min(max_cells, _MAX_COLUMNS)
+    limit = max(_LEAST_CELLS, min(max_cells, _MAX_COLUMNS))
     if not nx * ny <= limit:
         area = max(float(size[0]), resolution) * max(float(size[1]), resolution)
         fits = max(math.sqrt(area / limit), float(size.max()) / limit) * 1.01 + 1e-3

@@ -119,7 +119,7 @@ def connect(address: str, seconds: float) -> Channel:
     try:
         if port.isdigit() and "/" not in address:
             if host.strip("[]") not in _LOCAL:
-                what = f"is not on this machine: {host!r} is none of {', '.join(_LOCAL)}"
+                what = f"is not on this machine: {host!r} is not one of {', '.join(_LOCAL)}"
                 raise PeerError(what, f"start it on this machine and write 127.0.0.1:{port}")
             made = socket.create_connection((host.strip("[]"), int(port)), timeout=seconds)
         else:

@@ -196,8 +196,9 @@ def test_too_many_cells_name_the_resolution_that_fits(size) -> None:
         grid_over(np.zeros(2), np.array(size), 0.05, 1_000_000)
     advised = float(str(caught.value.fix).split()[-1])
     grid = grid_over(np.zeros(2), np.array(size), advised, 1_000_000)
-    assert grid.columns <= 1_000_000
-    assert grid.columns > 100_000
+    assert 100_000 < grid.columns <= 1_000_000
+    with pytest.raises(BridgeError, match="--resolution"):  # the least grid has more cells than this bound
+        grid_over(np.zeros(2), np.array(size), 0.05, 4)
 
 
 def test_no_triangle_no_span() -> None:

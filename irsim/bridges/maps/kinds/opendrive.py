@@ -143,7 +143,7 @@ def _road(path: Path, element: ET.Element) -> Road:
 def _geometry(path: Path, element: ET.Element, name: str) -> Geometry:
     shape = next((item for item in element if item.tag in _SHAPES), None)
     if shape is None:
-        raise unusable(path, f"road {name} has a geometry that is none of {', '.join(sorted(_SHAPES))}")
+        raise unusable(path, f"road {name} has a geometry other than {', '.join(sorted(_SHAPES))}")
     numbers = {key: _number(path, shape, key, name) for key in _SHAPES[shape.tag]}
     s, x, y, heading, length = (_number(path, element, key, name) for key in ("s", "x", "y", "hdg", "length"))
     if not 0 <= length <= _MAX_LENGTH:
