@@ -132,7 +132,7 @@ def entities() -> str:
         (f"<OpenDRIVE>{road('<line/>', length='1e300')}</OpenDRIVE>", "must be a number"),
         (f"<OpenDRIVE>{road('<line/>', length='1e9')}</OpenDRIVE>", "geometry of"),
         (f"<OpenDRIVE>{road('<line/>', length='-3')}</OpenDRIVE>", "geometry of"),
-        (f"<OpenDRIVE>{road('<loop/>')}</OpenDRIVE>", "none of arc"),
+        (f"<OpenDRIVE>{road('<loop/>')}</OpenDRIVE>", "other than arc"),
         (f"<OpenDRIVE>{road('<arc/>')}</OpenDRIVE>", "curvature of <arc> in road 7 is missing"),
     ],
 )
