@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import gymnasium
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
@@ -28,6 +29,7 @@ def actions_of(env: VectorEnv, seed: int, steps: int) -> list[Any]:
 
 @pytest.mark.parametrize("name", MADE)
 def test_the_checker_of_gymnasium_has_no_complaint(name: str) -> None:
+    plt.close("all")  # the checker opens a window, and Matplotlib warns of figures that other tests have left
     env = gymnasium.make("irsim/Task-v0", task=MADE[name])
     check_env(env.unwrapped)
     assert env.reset(seed=1)[0].shape == env.observation_space.shape

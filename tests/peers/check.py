@@ -172,7 +172,7 @@ RESULT = re.compile(r"^([✓✗]) ([\w-]+): \d+ passed, (\d+) failed", re.MULTIL
 def inspector(peers: Peers, workspace: str, *options: str) -> str:
     """MCP Inspector, over standard input and output."""
     server = [sys.executable, "-m", "irsim_mcp", "--workspace", workspace]
-    return peers.run("mcp-inspector", "--cli", *server, *options)
+    return peers.run("mcp-inspector", "--cli", *server, "--connect-timeout", "60000", *options)
 
 
 def load(peers: Peers, workspace: str) -> str:
