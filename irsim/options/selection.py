@@ -63,7 +63,7 @@ class Select:
         custom: Names registered by user code. Their mappings become ``fallback``; if the name is built in as well, they
             become its model with any additional key.
         fallback: Model of custom and unknown names; without it unknown names are errors.
-        accepts: Class attribute that is true for the models of the registry that are accepted here; None: for all.
+        accepts: Class attribute that is false for the models of the registry that are refused here; None: no model is.
         null: Whether null is accepted; it stays None.
         empty: Whether an empty mapping is accepted; it becomes None.
         short: Meaning of a text instead of a mapping: (name, key) makes ``{name: name, key: text}``; if the name is
@@ -98,7 +98,7 @@ class Select:
     def _is_accepted(self, name: Any) -> bool:
         if self.accepts is None or not isinstance(name, str) or (feature := self.registry.get(name)) is None:
             return True
-        return bool(getattr(feature.options, self.accepts))
+        return bool(getattr(feature.options, self.accepts, True))
 
     def name_of(self, value: Mapping[str, Any]) -> Any:
         """The name that selects the model of a mapping."""
