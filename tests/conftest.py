@@ -24,6 +24,7 @@ from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REG
 from irsim.scenario.model import json_schema
 from tests import warm
 from tests.browser import chromium, watched  # noqa: F401  # fixtures
+from tests.foreign import foreign, judge  # noqa: F401  # a fixture
 from tests.warm import schema
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -79,6 +80,14 @@ def _turns(items: list[pytest.Item], day: int) -> Iterator[int]:
 def pytest_collection_finish() -> None:
     """Collect garbage less often: thousands of tests and what they import stay until the end."""
     gc.set_threshold(100_000, 50, 100)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Iterator[None]:
+    """Tests over files of others have to run where the files are."""
+    report = yield
+    judge(item, report)
+    return report
 
 
 @pytest.hookimpl(optionalhook=True)
