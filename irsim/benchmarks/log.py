@@ -1,11 +1,12 @@
 """A log of the episodes of a benchmark, each written as soon as it is done, which survives an interruption.
 
-The first line of the file is the result without episodes; each further line is an episode and its place in the order.
+The first line of the file is the result without episodes; each further line is an episode, its place in the order, and
+a digest of both and of the first line, so that an episode which was changed or comes from another log is noticed.
 """
 
 from __future__ import annotations
 
-import json
+import hashlib
 import os
 import threading
 from collections.abc import Mapping, Sequence
@@ -14,6 +15,7 @@ from pathlib import Path
 
 from irsim.benchmarks.summary import incident_messages, notes_of, perturbation_notes, protocols_of, rows_of
 from irsim.common.files import write_atomically
+from irsim.common.records import ContentError, read_json
 from irsim.episodes.opening import UNOPENED
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.runs.files import RunError, refusal, unreadable
@@ -39,8 +41,8 @@ class Log:
 
     def __init__(self, file: str | Path, head: BenchmarkResult, known: Mapping[int, EpisodeRow] | None = None) -> None:
         self._lock, self._open = threading.Lock(), True
-        self._waiting = b""
-        lines = [head.model_dump_json(), *(_line(number, row) for number, row in sorted((known or {}).items()))]
+        self._waiting, self._head = b"", head.model_dump_json()
+        lines = [self._head, *(_line(self._head, number, row) for number, row in sorted((known or {}).items()))]
         try:
             write_atomically(Path(file), "".join(f"{line}\n" for line in lines))
             self._descriptor = os.open(file, _FLAGS)
@@ -72,7 +74,7 @@ class Log:
             number: Place of the episode in the order.
             episode: The episode.
         """
-        line = _line(number, episode).encode() + b"\n"
+        line = _line(self._head, number, episode).encode() + b"\n"
         with self._lock:
             if self._open:
                 self._waiting += line
@@ -121,7 +123,7 @@ def in_order(file: str | Path, episodes: Sequence[EpisodeRow]) -> str:
         head = Path(file).read_text(encoding="utf-8").partition("\n")[0]
     except OSError as error:
         raise refusal(file, error) from None
-    return "".join(f"{line}\n" for line in (head, *(_line(number, row) for number, row in enumerate(episodes))))
+    return "".join(f"{line}\n" for line in (head, *(_line(head, number, row) for number, row in enumerate(episodes))))
 
 
 def _read(file: str | Path) -> tuple[BenchmarkResult, dict[int, EpisodeRow]]:
@@ -129,16 +131,25 @@ def _read(file: str | Path) -> tuple[BenchmarkResult, dict[int, EpisodeRow]]:
     try:
         lines = Path(file).read_bytes().split(b"\n")[:-1]  # a killed process may have left half a line
         head = BenchmarkResult.model_validate_json(lines[0])
-        episodes = [json.loads(line) for line in lines[1:]]
-        return head, {int(item["number"]): EpisodeRow.model_validate(item["episode"]) for item in episodes}
+        items = [read_json(line) for line in lines[1:]]
+        episodes = {int(item["number"]): EpisodeRow.model_validate(item["episode"]) for item in items}
     except OSError as error:
         raise refusal(file, error) from None
-    except (ValueError, LookupError, TypeError):
+    except (ValueError, LookupError, TypeError, OverflowError, ContentError):
         raise unreadable(f"{str(file)!r} is not a log of a benchmark") from None
+    first = lines[0].decode()
+    for number, line in enumerate(lines[1:], 2):
+        place = int(items[number - 2]["number"])
+        if line.decode() != _line(first, place, episodes[place]):
+            what = f"line {number} of {str(file)!r} has been changed: it does not have the digest of its episode"
+            raise RunError("unreadable-run", what, "delete that line, and --resume runs its episode again")
+    return head, episodes
 
 
-def _line(number: int, episode: EpisodeRow) -> str:
-    return f'{{"number": {number}, "episode": {episode.model_dump_json()}}}'
+def _line(head: str, number: int, episode: EpisodeRow) -> str:
+    row = episode.model_dump_json()
+    digest = hashlib.sha256(f"{head}\n{number}\n{row}".encode()).hexdigest()[:16]
+    return f'{{"number": {number}, "episode": {row}, "digest": "{digest}"}}'
 
 
 def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> BenchmarkResult:

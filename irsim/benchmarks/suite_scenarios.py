@@ -17,6 +17,7 @@ from irsim.benchmarks.suite import MAX_SCENARIOS, Protocol, Suite, SuiteError, S
 from irsim.bundled.templates.fill import fill, parse_path
 from irsim.bundled.templates.store import TemplateError, load
 from irsim.common.text import clean
+from irsim.common.yaml.plain import read_plain_yaml
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest
 from irsim.scenario.messages.translate import located
 from irsim.scenario.read import read
@@ -67,7 +68,7 @@ def _data(scenario: SuiteScenario, values: Mapping[str, Any], file: Path) -> dic
             text = fill(load(scenario.template), {**scenario.parameters, **values})
         except TemplateError as error:
             raise SuiteError(f"scenario {scenario.name!r}: {error.message}", error.fix or "") from None
-        return dict(yaml.safe_load(text))
+        return dict(read_plain_yaml(text))
     if scenario.file is not None:
         document = load_path(folder / scenario.file)
         problems = [item for item in document.problems if item.severity == "error"]

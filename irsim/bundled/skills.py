@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Literal
 
 from irsim.common import data_files as resources
+from irsim.common.records import ContentError, read_json
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import CodedError
 
@@ -195,8 +196,8 @@ def _record(skill: Skill, files: Mapping[str, bytes]) -> bytes:
 def _read_record(folder: Path) -> dict[str, str]:
     """File -> digest, as recorded at the installation; empty without a valid record."""
     try:
-        digests = json.loads((folder / _RECORD).read_text(encoding="utf-8"))["files"]
-    except (OSError, ValueError, KeyError, TypeError):
+        digests = read_json(folder / _RECORD)["files"]
+    except (ContentError, KeyError, TypeError):
         return {}
     return {str(name): str(digest) for name, digest in digests.items()} if isinstance(digests, dict) else {}
 

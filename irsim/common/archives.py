@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import struct
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,9 +17,10 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
+from irsim.common.records import ContentError
 from irsim.common.text import clean
 
-__all__ = ["ContentError", "opened_archive", "pack_arrays", "unpack_arrays"]
+__all__ = ["opened_archive", "pack_arrays", "read_array", "unpack_arrays"]
 
 _END, _END_SIZE = b"PK\x05\x06", 22
 _LOCATOR, _LOCATOR_SIZE = b"PK\x06\x07", 20
@@ -31,23 +33,9 @@ _HEADER_BYTES = 4096
 """Longest header of an array."""
 _MAX_SIDES = 4
 _BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError, KeyError, OSError,
-           OverflowError, SyntaxError, TypeError, MemoryError, IndexError, AttributeError, struct.error)  # fmt: skip
+           OverflowError, SyntaxError, TypeError, MemoryError, IndexError, AttributeError, struct.error,
+           tokenize.TokenError, RecursionError)  # fmt: skip
 """Exceptions of the modules that read archives and array headers, on broken files."""
-
-
-class ContentError(Exception):
-    """The content of a file cannot be used.
-
-    Attributes:
-        message: The problem.
-        given: The value that is wrong, as text; may be empty.
-        allowed: Accepted values, as text; empty if the message says so.
-        place: Name of the entry, the array or the like; empty for the file.
-    """
-
-    def __init__(self, message: str, given: str = "", allowed: str = "", *, place: str = "") -> None:
-        self.message, self.given, self.allowed, self.place = message, given, allowed, clean(place, 100)
-        super().__init__(message)
 
 
 @contextmanager
@@ -71,6 +59,9 @@ def opened_archive(
     try:
         with io.BytesIO(source) if isinstance(source, bytes) else source.open("rb") as file:
             _check_end(_tail(file), most_entries)
+            file.seek(0)
+            if file.read(2) != b"PK":
+                raise ContentError("it does not begin as an archive does")
             with zipfile.ZipFile(file) as archive:
                 _check_entries(archive.infolist(), most_bytes, packed)
                 yield archive
@@ -154,10 +145,20 @@ def unpack_arrays(
         for entry in entries:
             if not entry.filename.endswith(".npy"):
                 raise ContentError("only arrays (.npy) are read", place=entry.filename)
-        return {entry.filename.removesuffix(".npy"): _array(archive, entry, kinds) for entry in entries}
+        return {entry.filename.removesuffix(".npy"): read_array(archive, entry, kinds) for entry in entries}
 
 
-def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, kinds: Sequence[str]) -> NDArray[Any]:
+def read_array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, kinds: Sequence[str]) -> NDArray[Any]:
+    """An array of an archive that :func:`opened_archive` has opened; it may be read-only.
+
+    Args:
+        archive: The archive.
+        entry: The entry, an ``.npy`` file.
+        kinds: Accepted types of numbers, such as ``f4``.
+
+    Raises:
+        ContentError: The entry is not such an array.
+    """
     data, place = archive.read(entry), entry.filename.removesuffix(".npy")
     stream = io.BytesIO(data)
     version = npy.read_magic(stream)

@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from irsim.common.arguments import as_given
 from irsim.common.arrays import Floats
+from irsim.common.records import ContentError
+from irsim.common.yaml.plain import read_plain_yaml
 from irsim.diagnostics.errors import ArgumentError, PolicyError
 from irsim.policies.observations import Neighbors, Observations
 from irsim.policies.policy import Episode, Needs, Policy
@@ -152,9 +153,9 @@ def _read(config: str) -> dict[str, Any]:
         PolicyError: There is no such file, or it is not a mapping.
     """
     try:
-        data = yaml.safe_load(Path(config).read_text(encoding="utf-8"))
-    except (OSError, TypeError, ValueError, yaml.YAMLError) as error:
-        what = f"the file of NeuPAN {as_given(config)} cannot be read: {str(error).splitlines()[0]}"
+        data = read_plain_yaml(Path(config))
+    except (TypeError, ContentError) as error:
+        what = f"the file of NeuPAN {as_given(config)} cannot be read: {error}"
         raise PolicyError("policy-failed", what, "write {name: neupan, config: planner.yaml}") from error
     if not isinstance(data, dict):
         raise PolicyError(

@@ -5,15 +5,14 @@ Poses and controls have one row per step; goals, flags and scans only the rows i
 
 from __future__ import annotations
 
-import json
-import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from struct import Struct
 from threading import Lock, Thread
 from typing import Any
+from zipfile import ZipFile
 
 import numpy as np
 from isal.isal_zlib import crc32
@@ -21,7 +20,9 @@ from numpy.typing import NDArray
 from pydantic_core import to_json
 
 import irsim._core as core
+from irsim.common.archives import opened_archive, read_array
 from irsim.common.files import Buffer
+from irsim.common.records import ContentError, read_json
 from irsim.runs.files import unreadable
 from irsim.simulation.trace import Trace
 
@@ -32,7 +33,12 @@ _MAX_BYTES = 256 * 1024**2
 """Size of the largest piece that is read."""
 _MAX_NUMBERS = 2**27
 """Number of values of the largest array that is read."""
+_MAX_LENGTH_M = 1e12
+"""Largest coordinate, speed and range that is read [m, m/s, rad]; squares of it are numbers, too."""
+_MAX_ENTRIES = 16
+_KINDS = ("f8", "f4", "u1")
 _ABOUT = "piece.json"
+_ARRAYS = ("pose", "control", "pose_at", "goal", "flags")
 _BITS = {"arrived": 1, "collided": 2, "stopped": 4}
 _ENTRY, _PLACE, _END = (Struct(f"<{kind}") for kind in ("5H3I2H", "3H2I", "4H2IH"))
 _MADE_BY = b"\x14\x00"
@@ -135,12 +141,14 @@ def load_chunk(path: Path, layout: Layout, objects: Sequence[int] | None = None,
     Raises:
         RunError: The file is not one that :func:`pack_chunk` makes.
     """
-    with _as_run_error(path):
-        _check_size(path)
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files if scans or name != "ranges"}
+    with _as_run_error(path), _opened(path) as archive:
+        about = read_json(archive.read(_ABOUT), most_bytes=_MAX_BYTES)
+        names = [*_ARRAYS, "ranges"] if scans else _ARRAYS
+        arrays = {name: read_array(archive, archive.getinfo(f"{name}.npy"), _KINDS) for name in names}
+        for array in arrays.values():
+            _check_values(array)
         chosen = range(len(layout.names)) if objects is None else objects
-        return _trace(json.loads(arrays.pop(_ABOUT)), arrays, layout, list(chosen))
+        return _trace(about, arrays, layout, list(chosen))
 
 
 def load_events(path: Path) -> Any:
@@ -149,10 +157,8 @@ def load_events(path: Path) -> Any:
     Raises:
         RunError: The file is not one that :func:`pack_chunk` makes.
     """
-    with _as_run_error(path):
-        _check_size(path)
-        with zipfile.ZipFile(path) as archive:
-            return json.loads(archive.read(_ABOUT))["events"]
+    with _as_run_error(path), _opened(path) as archive:
+        return read_json(archive.read(_ABOUT), most_bytes=_MAX_BYTES)["events"]
 
 
 @contextmanager
@@ -166,11 +172,9 @@ def _as_run_error(path: Path) -> Iterator[None]:
         KeyError,
         IndexError,
         TypeError,
-        EOFError,
-        NotImplementedError,
+        AttributeError,
         OverflowError,
-        RecursionError,
-        zipfile.BadZipFile,
+        ContentError,
     ) as error:
         raise unreadable(f"'{path.name}' of run {path.parent.name} has been changed: {error}") from None
 
@@ -239,12 +243,15 @@ def _expect(array: NDArray[Any], shape: tuple[int, ...]) -> None:
         raise ValueError(f"an array must have shape {shape}, got {array.shape}")
 
 
-def _check_size(path: Path) -> None:
-    """Refuse compressed files, which could unpack to any size: pieces are never compressed."""
-    with zipfile.ZipFile(path) as archive:
-        entries = archive.infolist()
-    if sum(entry.file_size for entry in entries) > min(_MAX_BYTES, path.stat().st_size):
-        raise ValueError("compressed or too large")
+def _check_values(array: NDArray[Any]) -> None:
+    """Refuse numbers with which no world works; positions of absent objects and missing ranges are not finite."""
+    if array.dtype.kind == "f" and (np.isfinite(array) & (np.abs(array) > _MAX_LENGTH_M)).any():
+        raise ValueError("a number is larger than any that irsim writes")
+
+
+def _opened(path: Path) -> AbstractContextManager[ZipFile]:
+    """The archive of a piece; compressed ones could unpack to any size, and pieces are never compressed."""
+    return opened_archive(path, most_bytes=_MAX_BYTES, most_entries=_MAX_ENTRIES, packed=False)
 
 
 class PieceWriter:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import hashlib
 import os
 import time
 from dataclasses import dataclass
@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.common.files import Buffer, create_bytes, replace_bytes, write_all
+from irsim.common.records import MAX_RECORD_BYTES, ContentError, read_json, read_text
 from irsim.diagnostics.errors import CodedError
 
 __all__ = [
@@ -17,6 +18,7 @@ __all__ = [
     "RunError",
     "claim",
     "create_file",
+    "digest_of",
     "json_of",
     "lock_file",
     "plain_file",
@@ -25,9 +27,6 @@ __all__ = [
     "text_of",
     "unreadable",
 ]
-
-_MAX_TEXT_BYTES = 32 * 1024**2
-"""Size of the largest text file that is read."""
 
 
 class RunError(CodedError, ValueError):
@@ -55,13 +54,13 @@ def text_of(folder: Path, name: str) -> str | None:
     if path is None:
         return None
     try:
-        if path.stat().st_size > _MAX_TEXT_BYTES:
+        if path.stat().st_size > MAX_RECORD_BYTES:
             raise unreadable(f"'{name}' of run {folder.name} is larger than any that irsim writes")
-        return path.read_text(encoding="utf-8")
+        return read_text(path)
     except FileNotFoundError:
         return None
-    except UnicodeDecodeError:
-        raise unreadable(f"'{name}' of run {folder.name} is not text") from None
+    except ContentError as error:
+        raise unreadable(f"'{name}' of run {folder.name} cannot be read: {error.message}") from None
 
 
 def json_of(folder: Path, name: str) -> Any:
@@ -74,9 +73,14 @@ def json_of(folder: Path, name: str) -> Any:
     if text is None:
         return None
     try:
-        return json.loads(text)
-    except (ValueError, RecursionError):
-        raise unreadable(f"'{name}' of run {folder.name} is not JSON: it has been changed") from None
+        return read_json(text)
+    except ContentError as error:
+        raise unreadable(f"'{name}' of run {folder.name} has been changed: {error.message}") from None
+
+
+def digest_of(content: bytes) -> str:
+    """A digest by which a changed file is noticed."""
+    return hashlib.sha256(content).hexdigest()[:32]
 
 
 def create_file(target: str | Path, text: bytes) -> None:

@@ -5,24 +5,52 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import BaseModel, Field, ValidationError
 
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
 from irsim.results.run import RunResult
 from irsim.runs.chunks import Layout, load_chunk, load_events
-from irsim.runs.files import RunError, json_of, plain_file, text_of, unreadable
+from irsim.runs.files import RunError, digest_of, json_of, plain_file, text_of, unreadable
 from irsim.runs.plain_scenario import with_options
 from irsim.runs.store import META, RESULT, Status, find_run, omission_notes, run_folders, runs_folder, status_of
 from irsim.simulation.events import Event
 from irsim.simulation.trace import Trace, cut_trace, join_traces
 
 __all__ = ["Run", "list_runs", "open_run"]
+
+Name = Annotated[str, Field(max_length=4096)]
+Count = Annotated[int, Field(strict=True, ge=0, lt=2**62)]
+Flag = Annotated[bool, Field(strict=True)]
+
+
+class _Meta(BaseModel):
+    """The keys that ``run.json`` must have, and the types of others that it may have."""
+
+    names: list[Name]
+    sensors: list[tuple[Name, Annotated[int, Field(strict=True, gt=0, le=10**7)]]]
+    step_time: Annotated[float, Field(strict=True, gt=0, le=1e9, allow_inf_nan=False)]
+    seed: Annotated[int, Field(strict=True, ge=0, lt=2**128)]
+    created: Name = ""
+    scenario: Name | None = None
+    folder: Name | None = None
+    horizon: Count = 0
+    options: dict[str, Any] = {}
+    maps: list[tuple[Name, Name]] = []
+    scans: Flag = True
+    trace_until: Count | None = None
+    scans_until: Count | None = None
+    resolved: Name | None = None
+    cancelled: Flag = False
+    irsim: Name = ""
+
 
 _PIECE = re.compile(r"(trace|events)-(\d{4,})\.(npz|json)")
 
@@ -114,10 +142,13 @@ class Run:
     @cached_property
     def resolved(self) -> dict[str, Any]:
         """World and objects at the start, with all defaults, as plain data."""
+        text, digest = text_of(self.folder, "resolved.json"), self.meta.get("resolved")
         try:
-            return with_options(json_of(self.folder, "resolved.json"))
+            if text is not None and digest in (None, digest_of(text.encode())):
+                return with_options(json_of(self.folder, "resolved.json"))
         except (TypeError, LookupError):
-            raise unreadable(f"resolved.json of run {self.id} is missing or has been changed") from None
+            pass
+        raise unreadable(f"resolved.json of run {self.id} is missing or has been changed")
 
     @property
     def notes(self) -> list[str]:
@@ -233,9 +264,11 @@ def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> R
     """
     folder = find_run(folder_or_id, workspace)
     meta = json_of(folder, META)
-    needed = {"names": list, "sensors": list, "step_time": float, "seed": int}
-    if not isinstance(meta, dict) or not all(isinstance(meta.get(key), kind) for key, kind in needed.items()):
-        raise unreadable(f"run.json of run {folder.name} has been changed")
+    try:
+        _Meta.model_validate(meta)
+    except ValidationError as error:
+        key = str(error).splitlines()[1]
+        raise unreadable(f"run.json of run {folder.name} has been changed: see its key '{clean(key)}'") from None
     return Run(folder, meta)
 
 
@@ -247,6 +280,7 @@ def list_runs(workspace: str | Path | None = None) -> list[Run]:
             meta = json_of(folder, META)
         except (RunError, OSError):
             continue
-        if isinstance(meta, dict):
+        with suppress(ValidationError):
+            _Meta.model_validate(meta)
             runs.append(Run(folder, meta))
     return runs

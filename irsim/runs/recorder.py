@@ -21,7 +21,7 @@ import irsim._core as core
 from irsim.common.files import Buffer
 from irsim.common.installed import version
 from irsim.runs.chunks import PieceWriter, pack_chunk
-from irsim.runs.files import Claim, RunError, claim, create_file, replace_file
+from irsim.runs.files import Claim, RunError, claim, create_file, digest_of, replace_file
 from irsim.runs.plain_scenario import plain_scenario
 from irsim.runs.store import (
     FILES,
@@ -138,7 +138,9 @@ class Recorder:
         }
         try:
             self._claim = claim(self._path(SCENARIO_FILE), _text_of(simulation).encode())
-            create_file(self._path("resolved.json"), plain_scenario(simulation))
+            resolved = plain_scenario(simulation)
+            create_file(self._path("resolved.json"), resolved)
+            self._meta["resolved"] = digest_of(resolved)
             self._meta["maps"] = self._copy_maps()
             self._write_meta()
         except BaseException:

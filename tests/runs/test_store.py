@@ -82,7 +82,7 @@ def test_a_run_alone_may_exceed_the_quota_while_it_is_kept(workspace: Path) -> N
     folder = made(workspace, "big", 1000)
     assert prune(runs_folder(workspace), quota=10, keep=folder.name) == []
     assert prune(runs_folder(workspace), quota=10) == [folder.name]
-    assert list(runs_folder(workspace).iterdir()) == []
+    assert [path.name for path in runs_folder(workspace).iterdir()] == [".clock"]
 
 
 def test_leftovers_are_swept(workspace: Path) -> None:
@@ -97,6 +97,30 @@ def test_leftovers_are_swept(workspace: Path) -> None:
         os.utime(path, (long_ago, long_ago))
     prune(runs)
     assert [path.exists() for path in (folder, half, trash, empty)] == [True, False, False, False]
+
+
+@pytest.mark.parametrize("years", [40, -40])
+def test_a_clock_that_jumps_deletes_no_new_run(workspace: Path, years: int) -> None:
+    """As on a small computer that starts in 1970 and then learns the time."""
+    runs, jump = runs_folder(workspace, make=True), years * 365 * 86400.0
+    prune(runs)
+    older, newer = (made(workspace, name, 1000, age=jump + age) for name, age in (("older", 9), ("newer", 5)))
+    boot, up, now, *_ = (runs / ".clock").read_text().split("\n")
+    (runs / ".clock").write_text(f"{boot}\n{up}\n{float(now) - jump}\n")
+    assert prune(runs) == []
+    last = made(workspace, "last", 1000)
+    assert prune(runs, quota=2500) == [older.name]
+    assert newer.is_dir()
+    assert last.is_dir()
+    assert made(workspace, "a", age=90_000).name in prune(runs), "a clock that goes on deletes old ones"
+
+
+def test_runs_from_the_future_are_as_new_as_those_of_now(workspace: Path) -> None:
+    future, now = made(workspace, "future", 1000, age=-1e9), made(workspace, "now", 1000)
+    prune(runs_folder(workspace))
+    assert abs((future / META).stat().st_mtime - time.time()) < 60
+    find_run(now.name, workspace)
+    assert prune(runs_folder(workspace), quota=1500) == [future.name]
 
 
 def test_names_are_slugs() -> None:

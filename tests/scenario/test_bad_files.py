@@ -18,6 +18,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from irsim.common.yaml.compose import compose
 from irsim.diagnostics.codes import CODES
 from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.examples import EXAMPLES
@@ -27,7 +28,6 @@ from irsim.scenario.model.json_schema import INEXPRESSIBLE, json_schema
 from irsim.scenario.model.plot import ObjectPlot
 from irsim.scenario.model.scenario import Entry, Scenario, WorldModel
 from irsim.scenario.read import Reading, read
-from irsim.scenario.yaml.compose import compose
 from irsim.validation.feasibility.check import feasibility_findings
 from tests.effort import examples
 

@@ -13,13 +13,13 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from irsim.common.yaml import compose as compose_module
+from irsim.common.yaml.compose import compose
+from irsim.common.yaml.nodes import Mark
 from irsim.diagnostics.errors import ScenarioNotFoundError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.locate import default_name, locate
-from irsim.scenario.yaml import compose as compose_module
-from irsim.scenario.yaml.compose import compose
 from irsim.scenario.yaml.document import load_data, load_path, load_text
-from irsim.scenario.yaml.nodes import Mark
 from tests.effort import examples
 
 SCALARS = [

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 import irsim
+from irsim.common.yaml.compose import compose
 from irsim.diagnostics.codes import CODES
 from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.diagnostics.report import format_diagnostics
@@ -17,7 +18,6 @@ from irsim.scenario.autofix import repair_text
 from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.scenario.messages.number_text import read_number
 from irsim.scenario.read import read
-from irsim.scenario.yaml.compose import compose
 from irsim.scenario.yaml.edits import apply_edits
 from irsim.scenario.yaml.formatting import flow, number, quote_value
 

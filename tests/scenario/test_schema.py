@@ -15,12 +15,12 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from irsim.common.yaml.compose import compose
 from irsim.options import registry
 from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.scenario.model import json_schema as schema_module
 from irsim.scenario.model.json_schema import INEXPRESSIBLE, check, json_schema, schema_text
 from irsim.scenario.read import read
-from irsim.scenario.yaml.compose import compose
 from tests.effort import examples
 from tests.scenario.test_language import COMPLETE
 

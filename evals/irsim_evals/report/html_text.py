@@ -9,9 +9,9 @@ import re
 from collections.abc import Collection
 
 from irsim.common.text import clean
+from irsim.common.yaml.nodes import Node
 from irsim.scenario.limits import Limits
 from irsim.scenario.yaml.document import Document, load_text
-from irsim.scenario.yaml.nodes import Node
 
 __all__ = ["UNITS", "code", "difference", "escaped", "lines_of", "number", "percent", "prose", "slug"]
 

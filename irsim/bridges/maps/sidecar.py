@@ -24,6 +24,7 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import FRAMES, axes_of, inverse, pose_matrix, rotation_of
 from irsim.common.arrays import Floats
 from irsim.common.installed import version
+from irsim.common.records import ContentError, read_json
 
 __all__ = ["FORMAT", "VERSION", "MapSidecar", "read_sidecar", "scene_transform", "sidecar_path"]
 
@@ -179,16 +180,9 @@ def read_sidecar(file: str | Path) -> MapSidecar:
     path = Path(file)
     path = path if path.name.endswith(".json") else sidecar_path(path)
     try:
-        with path.open("rb") as stream:
-            raw = stream.read(_MAX_BYTES + 1)
-    except OSError as error:
-        raise _wrong(path, f"it cannot be read: {error.strerror or error}") from None
-    if len(raw) > _MAX_BYTES:
-        raise _wrong(path, f"it has more than {_MAX_BYTES:,} bytes")
-    try:
-        content = json.loads(raw.decode("utf-8"))
-    except (UnicodeDecodeError, ValueError, RecursionError):
-        raise _wrong(path, "it is not JSON") from None
+        content = read_json(path, most_bytes=_MAX_BYTES)
+    except ContentError as error:
+        raise _wrong(path, f"it cannot be read: {error.message}") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise _wrong(path, f"its key 'format' is not '{FORMAT}'")
     if content.get("version") != VERSION:

@@ -6,15 +6,16 @@ The meaning of the keys follows http://wiki.ros.org/map_server (modes trinary, s
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
+from irsim.common.records import ContentError
+from irsim.common.yaml.plain import SMALL, read_plain_yaml
 from irsim.components.maps._picture import open_picture, upright
 from irsim.components.maps._site import OCCUPIED, MapProblem, MapSite, Raster, cells_along
 
@@ -22,8 +23,8 @@ __all__ = ["RosMeta", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
 
 MODES = ("trinary", "scale", "raw")
 UNKNOWN = -1.0
-_MAX_YAML_BYTES = 64 * 1024
-"""Size of the YAML file of a map."""
+_YAML = replace(SMALL, bytes=64 * 1024)
+"""Limits of the YAML file of a map."""
 _SAMPLES = 3
 """Samples per cell and axis, so that thin walls survive a rotation."""
 _EXTENT_TOLERANCE = 1e-9
@@ -72,14 +73,9 @@ def read_meta(path: Path, name: str) -> RosMeta:
         MapProblem: The file describes no map, or has a wrong value; the message names the key.
     """
     try:
-        with path.open("rb") as file:
-            content = file.read(_MAX_YAML_BYTES + 1)
-        if len(content) > _MAX_YAML_BYTES:
-            raise _wrong(name, "it is too large for the YAML file of a map (is it the picture?)")
-        data = yaml.safe_load(content.decode("utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError, RecursionError) as error:
-        text = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise _wrong(name, f"it cannot be read as YAML: {text}") from None
+        data = read_plain_yaml(path, _YAML)
+    except ContentError as error:
+        raise _wrong(name, f"it cannot be read as YAML: {error.message}") from None
     if not isinstance(data, dict):
         raise _wrong(name, "it must be a mapping with the keys image, resolution and origin")
     for key in ("image", "resolution"):

@@ -9,12 +9,16 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from pydantic import ValidationError
 
 from irsim.common.files import replacing, write_atomically
+from irsim.common.records import ContentError, read_json_lines
+from irsim.common.yaml.plain import read_plain_yaml
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.scene import scenario_text
 from irsim.learning.tasks.task import Task
 from irsim.learning.training.settings import AnySettings, settings_class
+from irsim.scenario.messages.translate import option_message, option_problems
 
 __all__ = ["RunFolder", "merit"]
 
@@ -82,14 +86,28 @@ class RunFolder:
         file = self.path / "settings.yaml"
         if not file.is_file():
             raise ArgumentError(f"{self.path} holds no training", "leave out --resume to begin one")
-        data = yaml.safe_load(file.read_text(encoding="utf-8"))
-        return settings_class(str(data["algo"])).model_validate(data)
+        try:
+            data = read_plain_yaml(file)
+            if not isinstance(data, dict):
+                raise ContentError("it is not a mapping")
+            return settings_class(str(data.get("algo"))).model_validate(data)
+        except ContentError as error:
+            raise _damaged(file, error.message) from None
+        except ValidationError as error:
+            message, _ = option_message(option_problems(error, data, settings_class(str(data["algo"]))))
+            raise _damaged(file, message) from None
 
     def rounds(self) -> list[dict[str, Any]]:
         """Facts of each finished round."""
         if not self._progress.is_file():
             return []
-        return [json.loads(line) for line in self._progress.read_text(encoding="utf-8").splitlines()]
+        try:
+            rounds = read_json_lines(self._progress)
+        except ContentError as error:
+            raise _damaged(self._progress, error.message) from None
+        if not all(isinstance(one, dict) for one in rounds):
+            raise _damaged(self._progress, "a line is not a mapping")
+        return rounds
 
     def save(self, model: Any, facts: dict[str, Any], *, best: bool) -> None:
         """Keep the model after a round. A kill at any moment leaves the round finished, or not begun.
@@ -104,3 +122,7 @@ class RunFolder:
                 model.save(file)
         lines = [json.dumps(one) for one in [*self.rounds(), facts]]
         write_atomically(self._progress, "\n".join(lines) + "\n")
+
+
+def _damaged(file: Path, problem: str) -> ArgumentError:
+    return ArgumentError(f"{file} is damaged: {problem}", "begin another training in another folder")

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
-import yaml
 from pydantic import Field, ValidationError
 
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
+from irsim.common.yaml.plain import read_value
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim.options.base import Options
@@ -171,7 +171,7 @@ def read_settings(given: Mapping[str, Any], texts: Sequence[str]) -> AnySettings
             raise ArgumentError(
                 f"there is no setting {clean(key)!r}", suggestion(key, known, f"choose from {', '.join(known)}")
             )
-        read = yaml.safe_load(value)
+        read = read_value(value)
         values[key] = number_of(read) if isinstance(read, str) else read
     try:
         return model.model_validate(values)

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-import yaml
 from pydantic import Field, ValidationError
 
 from irsim.common.arguments import as_given
 from irsim.common.files import check_suffix
 from irsim.common.text import clean
+from irsim.common.yaml.plain import read_value
 from irsim.diagnostics.diagnostic import format_path, suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim.options.base import Options
@@ -191,8 +191,5 @@ def parse_options(texts: Sequence[str]) -> dict[str, Any]:
         key, equals, value = text.partition("=")
         if not equals:
             raise ArgumentError(f"{as_given(text)} is not an option", "write KEY=VALUE")
-        try:
-            result[key] = yaml.safe_load(value)
-        except yaml.YAMLError:
-            result[key] = value
+        result[key] = read_value(value)
     return result

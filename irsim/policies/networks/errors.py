@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from irsim.common.archives import ContentError
+from irsim.common.records import ContentError
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, Path, format_path
 from irsim.diagnostics.errors import CodedError

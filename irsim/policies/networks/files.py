@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from irsim.common.archives import ContentError, pack_arrays, unpack_arrays
+from irsim.common.archives import pack_arrays, unpack_arrays
 from irsim.common.files import check_suffix, replace_bytes
+from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
 from irsim.policies.networks.document import FORMAT, PolicyDocument
 from irsim.policies.networks.errors import LIMITS, Limits, PolicyFileError, content_flaw, flaw
@@ -132,18 +133,6 @@ def parse_json(text: bytes, source: str, limits: Limits) -> Any:
         long = flaw("", "the document is too long", f"{len(text)} bytes", f"up to {limits.document_bytes}")
         raise PolicyFileError(source, [long], FIX)
     try:
-        return json.loads(text.decode(), object_pairs_hook=_without_twice, parse_constant=_refuse)
-    except (ValueError, RecursionError) as error:
-        broken = flaw("", f"the document is not valid JSON ({clean(str(error), 100)})")
-        raise PolicyFileError(source, [broken], FIX) from None
-
-
-def _without_twice(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    data = dict(pairs)
-    if len(data) < len(pairs):
-        raise ValueError("a key is given twice")
-    return data
-
-
-def _refuse(word: str) -> Any:
-    raise ValueError(f"{word} is not a number")
+        return read_json(text, unique=True)
+    except ContentError as error:
+        raise PolicyFileError(source, [flaw("", f"the document cannot be used: {error.message}")], FIX) from None

@@ -7,9 +7,9 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 
+from irsim.common.yaml.nodes import Node
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.yaml.document import Document
-from irsim.scenario.yaml.nodes import Node
 
 __all__ = ["comments", "keeps_comments", "places_of_comments"]
 

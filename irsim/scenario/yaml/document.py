@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from irsim.common.yaml.compose import Composed, compose
+from irsim.common.yaml.nodes import Mark, Node
 from irsim.diagnostics.diagnostic import Diagnostic, Path
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.yaml.compose import Composed, compose
-from irsim.scenario.yaml.nodes import Mark, Node
 
 __all__ = ["Document", "Mark", "load_data", "load_path", "load_text"]
 

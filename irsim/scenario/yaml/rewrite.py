@@ -8,9 +8,9 @@ from typing import Any
 
 import yaml
 
+from irsim.common.yaml.compose import compose
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.yaml.compose import compose
 from irsim.scenario.yaml.edits import apply_edits
 from irsim.scenario.yaml.formatting import flow
 

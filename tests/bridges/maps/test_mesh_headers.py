@@ -125,7 +125,7 @@ def test_a_gltf_may_have_files_beside_it_only(tmp_path) -> None:
         else:
             refused(file, said)
     (folder / "scene.gltf").write_text("[" * 100_000)
-    refused(file, "not JSON")
+    refused(file, "not valid JSON")
 
 
 VERTEX = "property float x\nproperty float y\nproperty float z\n"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import binascii
-import json
 import re
 import struct
 from pathlib import Path
@@ -12,6 +11,7 @@ from urllib.parse import unquote
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.source import ImportLimits, unusable
+from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
 from irsim.scenario.locate import why_outside
 
@@ -99,9 +99,9 @@ def _content(path: Path) -> tuple[Any, int | None]:
             raise unusable(path, f"its description has {length:,} bytes, and at most {_MAX_JSON:,} are read")
         raw = file.read(length)
     try:
-        content = json.loads(raw.decode("utf-8"))
-    except (UnicodeDecodeError, ValueError, RecursionError) as error:
-        raise unusable(path, f"its description is not JSON ({str(error)[:80]})") from None
+        content = read_json(raw)
+    except ContentError as error:
+        raise unusable(path, f"its description cannot be read: {error.message}") from None
     if not isinstance(content, dict):
         raise unusable(path, "its description is not a mapping")
     return content, binary

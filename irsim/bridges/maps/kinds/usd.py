@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
-from irsim.common.archives import ContentError, opened_archive
+from irsim.common.archives import opened_archive
 from irsim.common.child import ONE_THREAD
+from irsim.common.records import ContentError
 
 __all__ = ["KIND"]
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import IO, Any
 
-from irsim.common.archives import ContentError
+from irsim.common.records import ContentError
 
 __all__ = ["MAX_OPERATIONS", "Name", "Storage", "Stored", "Tensor", "read_pickle"]
 

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from irsim.common.archives import ContentError, opened_archive
+from irsim.common.archives import opened_archive
+from irsim.common.records import ContentError
 from irsim.common.text import clean
 from irsim.policies.converters.torch_files.pickles import Storage, Stored, Tensor, read_pickle
 from irsim.policies.networks.errors import LIMITS, Limits, PolicyFileError, content_flaw

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from datetime import date
 from typing import Any, Literal, NamedTuple
@@ -55,7 +56,7 @@ def _number(text: str) -> Scalar:
         return Scalar(float("-inf" if special.group(1) == "-" else "inf"))
     if _OCTAL.match(text) and text.strip("+-0_"):
         digits = text.replace("_", "").lstrip("+-")
-        return Scalar(int(digits, 8) * (-1 if text[0] == "-" else 1), "octal")
+        return Scalar(_bounded(int(digits, 8) * (-1 if text[0] == "-" else 1)), "octal")
     if _OCTAL.match(text):
         return Scalar(0)
     if ":" in text and _SEXAGESIMAL.match(text):
@@ -70,23 +71,32 @@ def _number(text: str) -> Scalar:
     return Scalar(text)
 
 
-def _integer(text: str) -> int:
+def _bounded(value: int) -> int | float:
+    """An integer as it is, or infinite beyond all doubles, as the same number with a point is."""
+    try:
+        float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+    return value
+
+
+def _integer(text: str) -> int | float:
     digits = text.lstrip("+-")
     base = {"0b": 2, "0x": 16}.get(digits[:2], 10)
     try:
         value = int(digits, base)
     except ValueError:  # only separators after the prefix: 0x_
         return 0
-    return -value if text[0] == "-" else value
+    return _bounded(-value if text[0] == "-" else value)
 
 
 def _base_sixty(text: str) -> int | float:
     parts = text.lstrip("+-").split(":")
-    total: int | float = 0
+    whole = 0
     for part in parts[:-1]:
-        total = total * 60 + int(part)
+        whole = (whole + int(part)) * 60
     last = parts[-1]
-    total = total * 60 + (float(last) if "." in last else int(last))
+    total = _bounded(whole) + (float(last) if "." in last else int(last))
     return -total if text[0] == "-" else total
 
 
@@ -98,7 +108,7 @@ def _timestamp(text: str) -> Any:
         return yaml.constructor.SafeConstructor().construct_yaml_timestamp(
             yaml.ScalarNode("tag:yaml.org,2002:timestamp", text)
         )
-    except ValueError:
+    except (ValueError, OverflowError):
         return text
 
 
@@ -125,4 +135,6 @@ def resolve_tagged(tag: str, text: str) -> Any:
         value = float(text)
     if not isinstance(value, (int, float)) or isinstance(value, bool):
         raise ValueError(f"{text!r} is not a number")
+    if kind == "int" and not math.isfinite(value):
+        raise ValueError(f"{text!r} is not an integer")
     return float(value) if kind == "float" else int(value)

@@ -11,10 +11,10 @@ from typing import Any
 
 import yaml
 
+from irsim.common.yaml.limits import YamlLimits
+from irsim.common.yaml.nodes import NO_KEY, Anchored, Frame, Mark, Node, merge, scalar_mark, start_mark
+from irsim.common.yaml.scalars import resolve, resolve_tagged
 from irsim.diagnostics.diagnostic import Diagnostic, Path
-from irsim.scenario.limits import Limits
-from irsim.scenario.yaml.nodes import NO_KEY, Anchored, Frame, Mark, Node, merge, scalar_mark, start_mark
-from irsim.scenario.yaml.scalars import resolve, resolve_tagged
 
 __all__ = ["Composed", "compose"]
 
@@ -36,7 +36,7 @@ class _Stop(Exception):
     """Raised after a problem that makes further reading pointless."""
 
 
-def compose(text: str, limits: Limits, *, positions: bool = False) -> Composed:
+def compose(text: str, limits: YamlLimits, *, positions: bool = False) -> Composed:
     """Read one YAML document.
 
     Args:
@@ -56,7 +56,7 @@ def compose(text: str, limits: Limits, *, positions: bool = False) -> Composed:
 
 
 class _Composer:
-    def __init__(self, text: str, limits: Limits, positions: bool) -> None:
+    def __init__(self, text: str, limits: YamlLimits, positions: bool) -> None:
         self.text, self.limits, self.positions = text, limits, positions
         self.stack: list[Frame] = []
         self.anchors: dict[str, Anchored | None] = {}  # None: still being read
@@ -92,7 +92,7 @@ class _Composer:
                 if documents > 1:
                     self._stop(
                         "multiple-documents",
-                        "a second YAML document starts here; a scenario is one document",
+                        "a second YAML document starts here; a file is one document",
                         event,
                         fix="remove the line '---' and what follows, or put it into a file of its own",
                     )
@@ -108,7 +108,7 @@ class _Composer:
                 "empty-document",
                 "error",
                 (),
-                "the file contains no scenario, only blank lines or comments",
+                "the file has no content, only blank lines or comments",
                 line=1,
                 column=1,
                 fix="start with 'world: {width: 10, height: 10}'",
@@ -304,7 +304,7 @@ class _Composer:
         shown = event.tag.replace("tag:yaml.org,2002:", "!!")
         self._problem(
             "unsupported-tag",
-            f"the tag '{shown}' is not supported: a scenario is plain data",
+            f"the tag '{shown}' is not supported: a file is plain data",
             event,
             given=shown,
             fix="remove the tag",
