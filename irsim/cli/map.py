@@ -105,8 +105,8 @@ def import_(
         str,
         typer.Argument(
             help="A mesh (.glb, .gltf, .obj, .ply, .stl), Gaussian splats (.ply), a navigation mesh of Habitat "
-            "(.navmesh), a USD stage (.usd, .usda, .usdc, .usdz), roads (.xodr), or the YAML file of a map of the "
-            "ROS map server.",
+            "(.navmesh), a USD stage (.usd, .usda, .usdc, .usdz), roads (.xodr), a world of Gazebo (.sdf, .world), or "
+            "the YAML file of a map of the ROS map server.",
             show_default=False,
         ),
     ],
@@ -175,6 +175,14 @@ def import_(
             show_default=False,
         ),
     ] = None,
+    root: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Folder with the models and meshes that a world names, as in model://table.",
+            show_default=False,
+        ),
+    ] = None,
     lanes: Annotated[Lanes, typer.Option(help="Lanes of roads that are free.")] = Lanes.drive,
     robot: Annotated[
         bool, typer.Option("--robot", help="Add a robot that drives from one end of the map to the other.")
@@ -202,6 +210,7 @@ def import_(
         "opacity": opacity,
         "bounds": None if bounds is None else _numbers(bounds, "bounds", 4, "--bounds 0,0,8,6"),
         "lanes": lanes.value,
+        "root": root,
     }
     if list_levels:
         result = only_list(file, **options)

@@ -13,7 +13,20 @@ from numpy.typing import NDArray
 from irsim.bridges.base import BridgeError
 from irsim.common.arrays import Floats
 
-__all__ = ["Bools", "Grid", "Ints", "Triangles", "clipped", "grid_over", "least", "most", "rows_of", "slices", "spread"]
+__all__ = [
+    "Bools",
+    "Grid",
+    "Ints",
+    "Triangles",
+    "clipped",
+    "fitting_resolution",
+    "grid_over",
+    "least",
+    "most",
+    "rows_of",
+    "slices",
+    "spread",
+]
 
 Ints: TypeAlias = NDArray[np.int64]
 """Array of integers."""
@@ -95,16 +108,9 @@ def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int, hint
     Raises:
         BridgeError: There would be too many cells; the message has a resolution that fits.
     """
-    size = np.asarray(high, dtype=np.float64) - low
-    nx, ny = (size[k] / resolution + 3 for k in range(2))
-    limit = max(_LEAST_CELLS, min(max_cells, _MAX_COLUMNS))
-    if not nx * ny <= limit:
-        area = max(float(size[0]), resolution) * max(float(size[1]), resolution)
-        fits = max(math.sqrt(area / limit), float(size.max()) / limit) * 1.01 + 1e-3
-        while (size[0] / fits + 3) * (size[1] / fits + 3) > limit:
-            fits *= 1.1
-        digits = 10 ** (math.floor(math.log10(fits)) - 1)
-        fits = math.ceil(fits / digits) * digits
+    fits = fitting_resolution(low, high, resolution, max_cells)
+    if fits > resolution:
+        size, limit = np.asarray(high, dtype=np.float64) - low, _limit(max_cells)
         what = (
             f"the scene is {size[0]:,.0f} m x {size[1]:,.0f} m, which is more than {limit:,} cells of {resolution:g} m"
         )
@@ -113,6 +119,23 @@ def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int, hint
     last = np.floor(high / resolution) + 2
     count = (last - first).astype(np.int64)
     return Grid(float(first[0] * resolution), float(first[1] * resolution), resolution, int(count[0]), int(count[1]))
+
+
+def fitting_resolution(low: Floats, high: Floats, resolution: float, max_cells: int) -> float:
+    """The side of a cell with which a grid over a rectangle is small enough: the given one, or a larger one [m]."""
+    size, limit = np.asarray(high, dtype=np.float64) - low, _limit(max_cells)
+    if (size[0] / resolution + 3) * (size[1] / resolution + 3) <= limit:
+        return resolution
+    area = max(float(size[0]), resolution) * max(float(size[1]), resolution)
+    fits = max(math.sqrt(area / limit), float(size.max()) / limit) * 1.01 + 1e-3
+    while (size[0] / fits + 3) * (size[1] / fits + 3) > limit:
+        fits *= 1.1
+    digits = 10 ** (math.floor(math.log10(fits)) - 1)
+    return float(math.ceil(fits / digits) * digits)
+
+
+def _limit(max_cells: int) -> int:
+    return max(_LEAST_CELLS, min(max_cells, _MAX_COLUMNS))
 
 
 def least(corners: Floats) -> Floats:

@@ -11,8 +11,9 @@ from pydantic import ValidationError
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.occupancy import eroded, occupancy_of
+from irsim.bridges.maps.shapes import occupancy_of_outlines
 from irsim.bridges.maps.sidecar import MapSidecar, scene_transform
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Occupancy, Scene, find_kind, unusable
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Occupancy, Outlines, Scene, find_kind, unusable
 from irsim.bridges.maps.writing import Trip, files_of, suggest_trip, write_all_or_none
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
@@ -149,7 +150,10 @@ def read_occupancy(
     source = {"file": path.name, "kind": kind.name, "bytes": size, "sha256": digest.hexdigest()}
     try:
         read = kind.read(path, options, limits)
-        result = occupancy_of(read, options, limits) if isinstance(read, Scene) else read
+        if isinstance(read, Scene):
+            result = occupancy_of(read, options, limits)
+        else:
+            result = occupancy_of_outlines(read, options, limits) if isinstance(read, Outlines) else read
     except MemoryError:
         raise unusable(path, "it does not fit into memory", "give a coarser --resolution, or a smaller file") from None
     return kind, result, source

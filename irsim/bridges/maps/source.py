@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -28,6 +29,8 @@ __all__ = [
     "ImportOptions",
     "Kind",
     "Occupancy",
+    "Outlined",
+    "Outlines",
     "Scene",
     "find_kind",
     "kinds",
@@ -46,6 +49,9 @@ class ImportOptions(Options):
     """Steepest surface that is a floor."""
     climb: Annotated[Meters, Field(ge=0, le=10)] = 0.2
     """Highest step that the robot climbs; what is lower is part of the floor."""
+    root: str | None = None
+    """Folder with models and meshes that a world of Gazebo names, as in ``model://table``; others are looked for where
+    ``GZ_SIM_RESOURCE_PATH`` and ``GAZEBO_MODEL_PATH`` say."""
     radius: Annotated[Meters, Field(ge=0, le=10)] = 0.0
     """Distance from obstacles within which cells become occupied. irsim keeps a robot's own shape clear of obstacles;
     only planning for points needs it."""
@@ -94,6 +100,14 @@ FREE, OCCUPIED, UNKNOWN = 0.0, 100.0, -1.0
 """Values of cells, as in occupancy grids of ROS; those between free and occupied are probabilities."""
 _HEAD = 4096
 """Bytes of a file by which its kind is known."""
+_LICENCE = 64 * 1024
+"""The same where it begins with a comment of XML."""
+_BEFORE_ROOT = re.compile(
+    r"\A\ufeff?(?:\s|<!--(?:(?!-->).)*-->|<\?(?:(?!\?>).)*\?>|<!DOCTYPE[^\[>]*(?:\[(?:(?!\]\s*>).)*\]\s*)?>)*"
+    r"<(?:[\w.-]+:)?([\w.-]+)",
+    re.DOTALL,
+)
+"""Everything up to the name of the root element of a file of XML."""
 
 
 @dataclass
@@ -159,6 +173,47 @@ class Occupancy:
 
 
 @dataclass(frozen=True)
+class Outlined:
+    """Something that stands in the way.
+
+    Attributes:
+        name: Its name in the file; empty if it has none.
+        region: The area that it occupies, a polygon or polygons of shapely [m], z up.
+        circle: Center and radius if it is a disk [m].
+    """
+
+    name: str
+    region: Any
+    circle: tuple[float, float, float] | None = None
+
+
+@dataclass
+class Outlines:
+    """Outlines of all that stands in the way; everything else is free.
+
+    Attributes:
+        things: What stands in the way.
+        frame: Convention of the axes of the file's world, see :mod:`irsim.bridges.frames`.
+        free: The area that is free by what the file says, such as roads; None for everything between the things.
+        meters_per_unit: Length of a unit of the file [m].
+        height: Height of the floor along the upward axis [m].
+        headroom, climb: Height and step of the robot that the file was made for [m]; None if the options decide.
+        notes: Remarks for the user.
+        parts: Other files that it was read from.
+    """
+
+    things: list[Outlined]
+    frame: str = "irsim"
+    free: Any = None
+    meters_per_unit: float = 1.0
+    height: float = 0.0
+    headroom: float | None = None
+    climb: float | None = None
+    notes: list[str] = field(default_factory=list)
+    parts: list[Path] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
 class Kind:
     """A kind of files that maps are made from; module ``irsim.bridges.maps.kinds.x`` has it as ``KIND``.
 
@@ -172,17 +227,19 @@ class Kind:
         extra: Extra of pyproject.toml whose libraries it needs.
         libraries: Their modules.
         unused: Names of options that say nothing about such files.
+        roots: Names of the root elements of such files, if they are files of XML.
     """
 
     name: str
     title: str
     suffixes: tuple[str, ...]
     accepts: Callable[[bytes], bool]
-    read: Callable[[Path, ImportOptions, ImportLimits], Scene | Occupancy]
+    read: Callable[[Path, ImportOptions, ImportLimits], Scene | Occupancy | Outlines]
     unknown: str = "occupied"
     extra: str = "mesh"
     libraries: tuple[str, ...] = ()
     unused: tuple[str, ...] = ()
+    roots: tuple[str, ...] = ()
 
 
 @cache
@@ -203,9 +260,14 @@ def find_kind(path: Path) -> Kind:
     try:
         with path.open("rb") as file:
             head = file.read(_HEAD)
+            if b"<!--" in head:
+                head += file.read(_LICENCE)
     except OSError as error:
         raise unusable(path, f"it cannot be read: {error.strerror or error}", "check the name of the file") from None
     suffix = path.suffix.lower()
+    root = xml_root(head)
+    if root is not None:
+        return _xml_kind(path, root)
     named = [kind for kind in kinds() if suffix in kind.suffixes]
     fitting = [kind for kind in named or kinds() if kind.accepts(head)]
     if fitting:
@@ -214,6 +276,27 @@ def find_kind(path: Path) -> Kind:
         raise unusable(path, f"it is {'empty' if not head else f'not {named[0].title}, as its name says'}")
     known = ", ".join(sorted({suffix for kind in kinds() for suffix in kind.suffixes}))
     raise unusable(path, "no map is made from files of this kind", f"give a file with one of the suffixes {known}")
+
+
+def xml_root(head: bytes) -> str | None:
+    """Name of the root element of a text of XML, without its namespace; None if the text is none of XML.
+
+    Args:
+        head: The first bytes of the text.
+    """
+    wide = head[:2] in (b"\xff\xfe", b"\xfe\xff")
+    match = _BEFORE_ROOT.match(head.decode("utf-16" if wide else "utf-8", "ignore"))
+    return match[1] if match else None
+
+
+def _xml_kind(path: Path, root: str) -> Kind:
+    """The kind of a file of XML, by its root element, whatever its name."""
+    fitting = [kind for kind in kinds() if root in kind.roots]
+    if fitting:
+        return fitting[0]
+    known = ", ".join(f"<{name}>" for name in sorted({name for kind in kinds() for name in kind.roots}))
+    what = f"it is an XML file of '{clean(root, 50)}', from which no map is made"
+    raise unusable(path, what, f"give one whose root element is one of {known}")
 
 
 def unusable(path: Path, why: str, fix: str | None = None) -> BridgeError:

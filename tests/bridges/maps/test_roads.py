@@ -121,7 +121,7 @@ def entities() -> str:
         ("", "empty"),
         ("hello", "not a road network"),
         ("<?xml version='1.0'?><OpenDRIVE>", "damaged"),
-        ("<?xml version='1.0'?><other/>", "not of OpenDRIVE"),
+        ("<?xml version='1.0'?><other/>", "an XML file of 'other'"),
         ("<OpenDRIVE></OpenDRIVE>", "no lanes"),
         (entities() + "<OpenDRIVE>&e11;</OpenDRIVE>", "entities"),
         ('<!DOCTYPE x SYSTEM "http://127.0.0.1:9/x"><OpenDRIVE/>', "entities"),

@@ -230,5 +230,5 @@ KIND = Kind(
     accepts=may_be_mesh,
     read=read,
     libraries=("trimesh",),
-    unused=("opacity", "lanes"),
+    unused=("opacity", "lanes", "root"),
 )

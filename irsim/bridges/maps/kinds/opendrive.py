@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import Ints, Triangles
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
+from irsim.bridges.maps.xml_files import read_xml
 from irsim.common.arrays import Floats
 
 __all__ = ["KIND", "Road", "lane_triangles", "read_roads"]
@@ -21,8 +21,6 @@ _STEP = 0.5
 """Distance between two cross sections of a road [m]; an arc of 10 m radius differs from its chord by 3 mm."""
 _MAX_LENGTH = 1e6
 """Length of one road [m]."""
-_MAX_DEPTH = 64
-"""Elements inside each other."""
 _SPIRAL_STEP = 0.02
 """Step of the integration of a spiral [m]; the midpoint rule is then exact to micrometers."""
 
@@ -71,52 +69,13 @@ class Road:
     sections: list[tuple[float, list[Lane]]] = field(default_factory=list)
 
 
-class _Builder(ET.TreeBuilder):
-    """Refuses document types, with which entities are declared, and deep nesting."""
-
-    def __init__(self, path: Path) -> None:
-        super().__init__()
-        self.path, self.depth = path, 0
-
-    def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
-        """Refuse the declaration of a document type."""
-        raise unusable(self.path, "it declares a document type, and with it entities, which are not read")
-
-    def start(self, tag: str, attrs: dict[str, str]) -> ET.Element:
-        """Begin an element."""
-        self.depth += 1
-        if self.depth > _MAX_DEPTH:
-            raise unusable(self.path, f"its elements are nested deeper than {_MAX_DEPTH}")
-        return super().start(tag, attrs)
-
-    def end(self, tag: str) -> ET.Element:
-        """End an element."""
-        self.depth -= 1
-        return super().end(tag)
-
-
-def read_roads(path: Path) -> Iterator[Road]:
+def read_roads(path: Path, limits: ImportLimits | None = None) -> Iterator[Road]:
     """Roads of a file, one after the other.
 
     Raises:
-        BridgeError: The file is not OpenDRIVE, damaged, or has a value that is not a number.
+        BridgeError: The file is damaged, or has a value that is not a number.
     """
-    parser = ET.XMLParser(target=_Builder(path))
-    try:
-        with path.open("rb") as file:
-            while block := file.read(1 << 20):
-                parser.feed(block)
-        root: ET.Element = parser.close()
-    except BridgeError:
-        raise
-    except ET.ParseError as error:
-        raise unusable(path, f"it is damaged ({error})") from None
-    except (LookupError, ValueError) as error:
-        raise unusable(path, f"its text cannot be decoded ({error})") from None
-    for element in root.iter():
-        element.tag = element.tag.rpartition("}")[2]
-    if root.tag != "OpenDRIVE":
-        raise unusable(path, f"it is an XML file of '{root.tag[:50]}', not of OpenDRIVE")
+    root = read_xml(path, limits or ImportLimits())
     for element in root.iterfind("road"):
         yield _road(path, element)
 
@@ -320,7 +279,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     barred: list[Triangles] = []
     seen: set[str] = set()
     total = 0
-    for road in read_roads(path):
+    for road in read_roads(path, limits):
         for kind, triangles in lane_triangles(path, road):
             total += len(triangles)
             if total > limits.triangles:
@@ -344,15 +303,12 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     )
 
 
-def _may_be_roads(head: bytes) -> bool:
-    return b"OpenDRIVE" in head or b"O\0p\0e\0n\0D\0R\0I\0V\0E" in head or head.lstrip()[:5] in (b"<?xml", b"<!DOC")
-
-
 KIND = Kind(
     name="opendrive",
     title="a road network of OpenDRIVE",
     suffixes=(".xodr",),
-    accepts=_may_be_roads,
+    accepts=lambda head: False,  # it is known by its root element
     read=read,
-    unused=("slope", "up", "meters_per_unit", "opacity"),
+    unused=("slope", "up", "meters_per_unit", "opacity", "root"),
+    roots=("OpenDRIVE",),
 )

@@ -75,6 +75,7 @@ KIND = Kind(
         "opacity",
         "bounds",
         "lanes",
+        "root",
     ),
     unknown="free",
 )

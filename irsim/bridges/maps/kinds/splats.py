@@ -103,5 +103,5 @@ KIND = Kind(
     suffixes=(".ply",),
     accepts=_may_be_splats,
     read=read,
-    unused=("slope", "lanes"),
+    unused=("slope", "lanes", "root"),
 )

@@ -105,5 +105,5 @@ KIND = Kind(
     read=read,
     extra="usd",
     libraries=("pxr",),
-    unused=("opacity", "lanes"),
+    unused=("opacity", "lanes", "root"),
 )

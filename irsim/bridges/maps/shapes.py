@@ -1,0 +1,143 @@
+"""From outlines to a map: which cells they occupy, and how large cells may be so that walls stay whole."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import shapely
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.grid import Bools, Grid, fitting_resolution, grid_over, rows_of
+from irsim.bridges.maps.regions import masked_regions
+from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Occupancy, Outlines
+
+__all__ = ["occupancy_of_outlines", "outlines_within"]
+
+_MARGIN = 0.5
+"""Free ground around all outlines [m]."""
+_FINEST = 0.005
+"""Smallest side that a cell gets by itself [m]."""
+_SHARE = 0.005
+"""Share of the occupied area by which cells may differ from it, and that walls thinner than a cell may have."""
+_LONG = 8
+"""Cells around a thin part that is a wall, and no tip of a corner."""
+_DEFAULT = ImportOptions.model_fields["resolution"].default
+
+
+def outlines_within(outlines: Outlines, bounds: tuple[float, float, float, float] | None) -> list[Any]:
+    """The areas of all things, within bounds [m].
+
+    Raises:
+        BridgeError: There are none.
+    """
+    regions = [thing.region for thing in outlines.things]
+    if bounds is not None:
+        regions = [
+            region for region in (thing.intersection(shapely.box(*bounds)) for thing in regions) if region.area > 0
+        ]
+    if not regions and outlines.free is None:
+        where = "within the bounds" if bounds is not None else "between --climb and --headroom above the floor"
+        raise BridgeError("bridge-file", f"the scene is not usable: nothing stands {where}", "check them, and --height")
+    return regions
+
+
+def occupancy_of_outlines(outlines: Outlines, options: ImportOptions, limits: ImportLimits) -> Occupancy:
+    """The map of outlines: cells whose centers are inside are occupied.
+
+    Without ``--resolution`` cells become smaller until they have the area of the outlines, and larger if there would be
+    too many. Walls thinner than a cell are as thick as one.
+
+    Raises:
+        BridgeError: Nothing stands in the way, or there are too many cells for a resolution that was asked for.
+    """
+    regions = outlines_within(outlines, options.bounds)
+    solid = shapely.union_all(regions)
+    low, high = _extent(outlines, solid, options)
+    side, notes = options.resolution, list(outlines.notes)
+    chosen = side == _DEFAULT
+    if chosen:
+        side = max(side, fitting_resolution(low, high, side, limits.cells))
+        while (
+            side / 2 >= _FINEST
+            and not _fits(solid, side)
+            and fitting_resolution(low, high, side / 2, limits.cells) <= side / 2
+        ):
+            side /= 2
+        if side != options.resolution:
+            why = (
+                "so that walls and areas are kept" if side < options.resolution else "so that the map is not too large"
+            )
+            notes.append(f"cells are {side:g} m, {why}; --resolution sets another size")
+    grid = grid_over(low, high, side, limits.cells, ", a part of it with --bounds")
+    thin = _thin_walls(solid, side)
+    values = np.full((grid.nx, grid.ny), FREE)
+    if outlines.free is not None:
+        values[~_painted(outlines.free, grid)] = UNKNOWN
+    values[_painted(solid, grid)] = OCCUPIED
+    if thin:
+        values[_painted(shapely.union_all(thin), grid, touched=True)] = OCCUPIED
+        notes.append(f"walls thinner than a cell of {side:g} m are as thick as one; try --resolution {side / 2:g}")
+    result = Occupancy(values, grid, outlines.frame, outlines.height, outlines.meters_per_unit, notes=notes)
+    result.headroom, result.climb, result.parts = outlines.headroom, outlines.climb, outlines.parts
+    _pick_part(result, options)
+    return result
+
+
+def _extent(outlines: Outlines, solid: Any, options: ImportOptions) -> tuple[Any, Any]:
+    """Lower and upper corner of the map [m]."""
+    if options.bounds is not None:
+        return np.array(options.bounds[:2]), np.array(options.bounds[2:])
+    around = shapely.total_bounds([part for part in (solid, outlines.free) if part is not None])
+    return around[:2] - _MARGIN, around[2:] + _MARGIN
+
+
+def _opened(region: Any, width: float) -> Any:
+    """The part of an area that is at least as wide as that [m]."""
+    half = 0.499 * width
+    return region.buffer(-half, join_style="mitre").buffer(half, join_style="mitre").buffer(1e-9)
+
+
+def _thin_walls(solid: Any, side: float) -> list[Any]:
+    """The parts of an area that are thinner than a cell, and stand by themselves rather than along a wider part."""
+    wide = _opened(solid, side)
+    parts = [part for part in shapely.get_parts(solid.difference(wide)) if part.length > _LONG * side]
+    return [part for part in parts if part.boundary.intersection(wide.buffer(1e-6)).length < 0.3 * part.length]
+
+
+def _fits(solid: Any, side: float) -> bool:
+    """Whether no wall is thinner than a cell, and cells have the area of the outlines."""
+    if solid.is_empty:
+        return True
+    if solid.difference(_opened(solid, side)).area > _SHARE * solid.area:
+        return False
+    low, high = np.split(np.array(solid.bounds), 2)
+    cells = _painted(solid, grid_over(low, high, side, 1 << 40)).sum()
+    return bool(abs(cells * side**2 - solid.area) <= _SHARE * solid.area)
+
+
+def _painted(region: Any, grid: Grid, *, touched: bool = False) -> Bools:
+    """(nx, ny) cells whose centers are in an area, or that it touches."""
+    result = np.zeros((grid.nx, grid.ny), bool)
+    areas = [part for part in shapely.get_parts(region) if part.geom_type == "Polygon"]
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(np.array(areas, dtype=object)))
+    corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3]
+    corners = (corners - [grid.x, grid.y]) / grid.resolution
+    for _, i, j, _ in rows_of(np.clip(corners, 0, [grid.nx - 1e-6, grid.ny - 1e-6]), at_centers=not touched):
+        result[i, j] = True
+    return result
+
+
+def _pick_part(result: Occupancy, options: ImportOptions) -> None:
+    """Say how large the connected free parts are, and keep the one at the seed point."""
+    number, sizes = masked_regions(result.values == FREE)
+    result.regions = [float(size) * result.grid.resolution**2 for size in sizes]
+    if options.seed_point is None:
+        return
+    x, y = options.seed_point
+    column = result.grid.column_at(x, y)
+    kept = -1 if column is None else int(number.reshape(-1)[column])
+    if kept < 0:
+        raise BridgeError("bridge-file", f"the seed point ({x:g}, {y:g}) is not free in this map", "give a free place")
+    result.kept = kept
+    result.values[(result.values == FREE) & (number != kept)] = OCCUPIED

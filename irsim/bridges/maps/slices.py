@@ -1,0 +1,134 @@
+"""What a robot meets of solids: the outline of the part of a solid between two heights."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import shapely
+
+from irsim.bridges.maps.grid import Triangles, clipped
+from irsim.common.arrays import Floats
+
+__all__ = [
+    "SEGMENTS",
+    "box_points",
+    "capsule_points",
+    "cylinder_points",
+    "ellipsoid_points",
+    "slice_of_hull",
+    "slice_of_mesh",
+]
+
+SEGMENTS = 64
+"""Corners of round outlines."""
+_RINGS = 16
+"""Rings of corners of a ball between its middle and its top."""
+_TINY = 1e-9
+_SHEET = 0.01
+"""Half of the thickness that a surface without an inside gets [m]."""
+
+
+def box_points(size: Floats) -> Floats:
+    """(8, 3) corners of a box around the origin, by its sides (3,)."""
+    signs = np.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)]) - 0.5
+    points: Floats = signs * size
+    return points
+
+
+def _round(radius: float) -> Floats:
+    """(SEGMENTS, 2) corners of a polygon with the area of a disk."""
+    angle = (np.arange(SEGMENTS) + 0.5) * (2 * math.pi / SEGMENTS)
+    wide = radius * math.sqrt(2 * math.pi / SEGMENTS / math.sin(2 * math.pi / SEGMENTS))
+    return wide * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def cylinder_points(radius: float, length: float, top: float | None = None) -> Floats:
+    """(2 * SEGMENTS, 3) corners of a cylinder along z around the origin; ``top`` is the radius of the upper end."""
+    ends = ((radius, -length / 2), (radius if top is None else top, length / 2))
+    return np.concatenate([np.column_stack([_round(r), np.full(SEGMENTS, z)]) for r, z in ends])
+
+
+def capsule_points(radius: float, length: float) -> Floats:
+    """Corners of a cylinder along z with half a ball at each end."""
+    ball, half = ellipsoid_points(np.full(3, radius)), np.array([0, 0, length / 2])
+    return np.concatenate([ball + half, ball - half])
+
+
+def ellipsoid_points(radii: Floats) -> Floats:
+    """(N, 3) corners of an ellipsoid around the origin, by its radii (3,)."""
+    tilt = np.arange(-_RINGS, _RINGS + 1) * (math.pi / 2 / _RINGS)
+    ring = _round(1.0)
+    parts = [np.column_stack([ring * math.cos(a), np.full(SEGMENTS, math.sin(a))]) for a in tilt]
+    points: Floats = np.concatenate(parts) * radii
+    return points
+
+
+def slice_of_hull(points: Floats, low: float, high: float) -> Any:
+    """The convex outline of the part of a convex solid between two heights; None if there is none.
+
+    Args:
+        points: (N, 3) corners of the solid.
+        low: The lower height [m].
+        high: The upper height [m].
+    """
+    z = points[:, 2]
+    if z.max() <= low + _TINY or z.min() >= high - _TINY:
+        return None
+    kept = [points[(z >= low) & (z <= high), :2]]
+    for limit in (low, high):
+        below, above = points[z < limit], points[z > limit]
+        if len(below) and len(above):
+            share = (limit - below[:, None, 2]) / (above[None, :, 2] - below[:, None, 2])
+            kept.append(
+                (below[:, None, :2] + share[..., None] * (above[None, :, :2] - below[:, None, :2])).reshape(-1, 2)
+            )
+    hull = shapely.convex_hull(shapely.MultiPoint(np.concatenate(kept)))
+    return hull if hull.geom_type == "Polygon" and hull.area > _TINY else None
+
+
+def slice_of_mesh(triangles: Triangles, low: float, high: float) -> Any:
+    """The outline of the part of a mesh between two heights; None if there is none.
+
+    It is the cut at the lower height and, from there on, whatever surface there is above it. Surfaces without an inside
+    count as thin walls.
+
+    Args:
+        triangles: (T, 3, 3) corners [m].
+        low: The lower height [m].
+        high: The upper height [m].
+    """
+    corners = np.asarray(triangles, dtype=np.float64)
+    z = corners[..., 2]
+    corners = corners[(z.max(axis=1) >= low) & (z.min(axis=1) <= high)]
+    if not len(corners):
+        return None
+    parts = []
+    bottom = float(corners[..., 2].min())
+    ends = _cut(corners, max(low, bottom + 1e-6 * max(high - bottom, 1e-3)))
+    if len(ends):
+        lines = shapely.union_all(shapely.set_precision(shapely.linestrings(ends), 1e-6))
+        inside = shapely.build_area(lines)
+        loose = lines.difference(inside.buffer(1e-5)) if not inside.is_empty else lines
+        parts += [inside, loose.buffer(_SHEET)] if loose.length > 0.05 * lines.length else [inside]
+    between = clipped(corners[..., [2, 0, 1]], (low, -math.inf, high, math.inf))
+    flat = shapely.get_parts(shapely.polygons(between[..., 1:]) if len(between) else np.array([], dtype=object))
+    parts += [one for one in flat if one.area > _TINY]
+    region = shapely.union_all(shapely.make_valid(np.array(parts, dtype=object))) if parts else None
+    areas = [one for one in shapely.get_parts(region) if one.geom_type == "Polygon"] if region is not None else []
+    return shapely.union_all(areas) if areas and sum(one.area for one in areas) > _TINY else None
+
+
+def _cut(corners: Floats, height: float) -> Floats:
+    """(S, 2, 2) lines in which triangles cross a height."""
+    above = corners[..., 2] > height
+    crossing = corners[above.any(axis=1) & ~above.all(axis=1)]
+    above = crossing[..., 2] > height
+    single = np.where((above.sum(axis=1) == 1)[:, None], above, ~above)
+    order = (np.argmax(single, axis=1)[:, None] + [0, 1, 2]) % 3
+    a, b, c = np.take_along_axis(crossing, order[..., None], axis=1).transpose(1, 0, 2)
+    ends = [a + (other - a) * ((height - a[:, 2]) / (other[:, 2] - a[:, 2]))[:, None] for other in (b, c)]
+    lines = np.stack(ends, axis=1)[..., :2]
+    long: Floats = lines[np.hypot(*(lines[:, 0] - lines[:, 1]).T) > _TINY]
+    return long
