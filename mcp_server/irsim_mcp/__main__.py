@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from irsim_mcp.limits import ServerLimits
 
 if TYPE_CHECKING:
-    from irsim_mcp.http import Address
+    from irsim_mcp.hosts import Address
 
 __all__ = ["main"]
 
@@ -32,7 +32,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     limits = replace(limits, bridges=options.enable_bridges)
 
     from irsim_mcp.call_log import CallLog, CallLogRefused
-    from irsim_mcp.http import HttpRefused, serve, token_from
+    from irsim_mcp.hosts import HttpRefused
+    from irsim_mcp.http import serve, token_from
+    from irsim_mcp.log import log_to_stderr
     from irsim_mcp.server import build_server
     from irsim_mcp.worker import missing_limits
 
@@ -42,6 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         calls = None if options.log_calls is None else CallLog(options.log_calls)
     except CallLogRefused as refused:
         _parser().error(str(refused))
+    log_to_stderr()
     server = build_server(workspace, limits, writing=options.enable_write, calls=calls)
     if options.http is not None:
         try:
@@ -129,7 +132,7 @@ class _Version(argparse.Action):
 
 
 def _address(text: str) -> Address:
-    from irsim_mcp.http import address
+    from irsim_mcp.hosts import address
 
     try:
         return address(text)

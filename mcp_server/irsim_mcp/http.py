@@ -3,71 +3,31 @@
 from __future__ import annotations
 
 import hmac
-import ipaddress
 import os
 import re
+import socket
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
+
+from irsim_mcp.hosts import Address, HttpRefused, allowed_hosts, anywhere, why_refused
 
 if TYPE_CHECKING:
     from mcp.server import MCPServer
-    from mcp.server.transport_security import TransportSecuritySettings
     from starlette.types import ASGIApp, Receive, Scope, Send
 
-__all__ = ["PATH", "TOKEN_VARIABLE", "Address", "HttpRefused", "address", "serve", "token_from"]
+__all__ = ["PATH", "TOKEN_VARIABLE", "serve", "token_from"]
 
 PATH = "/mcp"
 TOKEN_VARIABLE = "IRSIM_MCP_TOKEN"
-_LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 _MIN_TOKEN_LENGTH = 16
 _MAX_TOKEN_LENGTH = 1024
-_SHUTDOWN_SECONDS = 2
-"""Time that open requests have to end when the server is terminated [s]."""
+_MAX_SESSIONS = 64
+"""Number of sessions at the same time; who opens another one is answered with 503."""
+_IDLE_SECONDS = 30 * 60
+"""Time after which a session without a request ends [s]."""
 _TOKEN = re.compile(r"[A-Za-z0-9._~+/=-]+")
-_ANYWHERE = ("0.0.0.0", "::")
-
-
-class HttpRefused(ValueError):
-    """Options with which serving would be unsafe or impossible."""
-
-
-class Address(NamedTuple):
-    """Host and port to listen at."""
-
-    host: str
-    port: int
-
-    @property
-    def loopback(self) -> bool:
-        """Whether only this machine can connect."""
-        if self.host == "localhost":
-            return True
-        try:
-            return ipaddress.ip_address(self.host).is_loopback
-        except ValueError:
-            return False
-
-    @property
-    def name(self) -> str:
-        """The host as it appears in a URL."""
-        return f"[{self.host}]" if ":" in self.host else self.host
-
-
-def address(text: str) -> Address:
-    """Read ``[HOST:]PORT``; without a host it is 127.0.0.1.
-
-    Args:
-        text: Text such as ``8000``, ``127.0.0.1:8000`` or ``[::1]:8000``; port 0 chooses a free port.
-    """
-    host, _, port = text.rpartition(":")
-    if ":" in host and not (host.startswith("[") and host.endswith("]")):
-        raise ValueError(f"{text} is not [HOST:]PORT; write IPv6 addresses as [::1]:8000")
-    host = host.removeprefix("[").removesuffix("]")
-    if not re.fullmatch(r"\d{1,5}", port) or int(port) > 65535 or (":" in text and not host):
-        raise ValueError(f"{text} is not [HOST:]PORT")
-    return Address(host or "127.0.0.1", int(port))
 
 
 def token_from(file: Path | None) -> str | None:
@@ -94,18 +54,6 @@ def token_from(file: Path | None) -> str | None:
     return text
 
 
-def _security(where: Address, names: Sequence[str]) -> TransportSecuritySettings:
-    """Values of Host and Origin that are accepted, which excludes pages of other sites."""
-    from mcp.server.transport_security import TransportSecuritySettings
-
-    own = _LOOPBACK if where.loopback else ()
-    bound = () if where.host in _ANYWHERE else (where.name,)
-    hosts = list(dict.fromkeys((*own, *bound, *names)))
-    every = [form for host in hosts for form in (host, f"{host}:*")]
-    origins = [f"{scheme}://{form}" for scheme in ("http", "https") for form in every]
-    return TransportSecuritySettings(allowed_hosts=every, allowed_origins=origins)
-
-
 def application(server: MCPServer, where: Address, token: str | None, names: Sequence[str] = ()) -> ASGIApp:
     """The server as a web application.
 
@@ -123,14 +71,44 @@ def application(server: MCPServer, where: Address, token: str | None, names: Seq
             f"--http {where.name}:{where.port} lets other machines connect, which needs a token: give "
             f"--token-file FILE or set {TOKEN_VARIABLE}, or serve this machine only with --http {where.port}"
         )
-    if where.host in _ANYWHERE and not names:
+    if anywhere(where) and not names:
         raise HttpRefused(
             f"--http {where.name}:{where.port} needs --allow-host NAME, the name or address that clients connect to"
         )
+    from mcp.server.transport_security import TransportSecuritySettings
+
+    from irsim_mcp.bodies import WholeMessages
+
     app: ASGIApp = server.streamable_http_app(
-        host=where.host, streamable_http_path=PATH, transport_security=_security(where, names)
+        host=where.host,
+        streamable_http_path=PATH,
+        transport_security=TransportSecuritySettings(enable_dns_rebinding_protection=False),  # OwnHosts does it
+        max_sessions=_MAX_SESSIONS,
+        session_idle_timeout=_IDLE_SECONDS,
     )
+    app = _OwnHosts(WholeMessages(app), allowed_hosts(where, names))
     return app if token is None else _WithToken(app, token)
+
+
+class _OwnHosts:
+    """Passes on the requests that mean this server, and refuses all others.
+
+    Args:
+        app: The application behind it.
+        allowed: The hosts that requests may name.
+    """
+
+    def __init__(self, app: ASGIApp, allowed: frozenset[str]) -> None:
+        self._app, self._allowed = app, allowed
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        refused = why_refused(scope["headers"], self._allowed) if scope["type"] == "http" else None
+        if refused is None:
+            await self._app(scope, receive, send)
+            return
+        from starlette.responses import PlainTextResponse
+
+        await PlainTextResponse(refused[1], status_code=refused[0])(scope, receive, send)
 
 
 class _WithToken:
@@ -167,14 +145,9 @@ class _WithToken:
 
 def serve(server: MCPServer, where: Address, token: str | None, names: Sequence[str] = ()) -> None:
     """Serve until the process is terminated (see :func:`application`); writes the URL to standard error."""
-    import socket
-
-    import uvicorn
+    from irsim_mcp.connections import server_of
 
     app = application(server, where, token, names)
-    config = uvicorn.Config(
-        app, log_level="warning", server_header=False, timeout_graceful_shutdown=_SHUTDOWN_SECONDS, ws="none"
-    )
     family = socket.AF_INET6 if ":" in where.host else socket.AF_INET
     with socket.socket(family) as listening:
         if os.name == "posix":
@@ -186,4 +159,4 @@ def serve(server: MCPServer, where: Address, token: str | None, names: Sequence[
             raise HttpRefused(f"--http {where.name}:{where.port}: {error.strerror or error}") from None
         port = listening.getsockname()[1]
         print(f"irsim-mcp: serving http://{where.name}:{port}{PATH}", file=sys.stderr, flush=True)
-        uvicorn.Server(config).run(sockets=[listening])
+        server_of(app).run(sockets=[listening])

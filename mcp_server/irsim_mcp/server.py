@@ -27,6 +27,7 @@ from irsim_mcp.resources import RUN, add_completions, add_docs, add_resources, a
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.services import Services
 from irsim_mcp.skills import Skills
+from irsim_mcp.stdio import standard_streams
 from irsim_mcp.tools import make_tools
 from irsim_mcp.worker import Workers
 
@@ -59,6 +60,12 @@ class IrsimServer(MCPServer[Any]):
     """
 
     calls: CallLog | None = None
+
+    async def run_stdio_async(self) -> None:
+        """Serve over standard input and output."""
+        async with standard_streams() as (messages, answers):
+            options = self._lowlevel_server.create_initialization_options()
+            await self._lowlevel_server.run(messages, answers, options)
 
     async def call_tool(
         self, name: str, arguments: dict[str, Any], context: Context[Any, Any] | None = None

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import os
 import re
+import socket
 import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import anyio
 import httpx2
 import pytest
 from mcp.client.streamable_http import streamable_http_client
 
-from irsim_mcp.http import Address, HttpRefused, address, application, token_from
+from irsim_mcp.hosts import Address, HttpRefused, address
+from irsim_mcp.http import application, token_from
 from irsim_mcp.server import build_server
 from tests.mcp.conftest import ERAS, LONG, ROOM, Caller, children_of, linux, wait_until_gone
 from tests.warm import warm_mcp
@@ -80,12 +83,50 @@ async def test_the_same_server_answers(local: str, era: str) -> None:
         ({"Host": "localhost.evil.example:80"}, 421),
         ({"Host": "127.0.0.1.nip.io:8000"}, 421),
         ({"Content-Type": "text/plain"}, 400),
+        ({"Host": "LOCALHOST:80"}, 200),
+        ({"Host": "localhost."}, 200),
+        ({"Host": "[::1]:80", "Origin": "HTTP://127.1"}, 200),
+        ({"Host": "127.0.0.1:80@evil"}, 421),
+        ({"Host": "127.0.0.1:80@evil.example:80"}, 421),
+        ({"Host": "user@localhost"}, 421),
+        ({"Host": "localhost:80, evil.example"}, 421),
+        ({"Host": "localhost:port"}, 421),
+        ({"Host": "localhost/evil"}, 421),
+        ({"Host": "0.0.0.0"}, 421),
+        ({"Host": ""}, 421),
+        ({"Origin": ""}, 403),
+        ({"Origin": "http://localhost http://evil.example"}, 403),
+        ({"Origin": "http://localhost, https://evil.example"}, 403),
+        ({"Origin": "http://localhost:80@evil.example"}, 403),
+        ({"Origin": "http://localhost:80.evil.example"}, 403),
+        ({"Origin": "http://localhost/evil"}, 403),
+        ({"Origin": "file://localhost"}, 403),
+        ({"Origin": "localhost"}, 403),
     ],
 )
 def test_pages_of_other_sites_are_not_let_in(local: str, headers: dict[str, str], status: int) -> None:
     answer = httpx2.post(local, json=DISCOVER, headers={**HEADERS, **headers})
     assert answer.status_code == status
     assert "Traceback" not in answer.text
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "status"),
+    [
+        ("Origin", ["http://localhost", "https://evil.example"], 403),
+        ("Origin", ["http://localhost", "http://localhost"], 403),
+        ("Host", ["localhost", "evil.example"], 400),
+        ("Host", ["localhost", "localhost"], 400),
+    ],
+)
+def test_several_lines_of_one_header_are_refused(local: str, name: str, values: list[str], status: int) -> None:
+    lines = {"Host": "localhost", **HEADERS, "Content-Length": "0"}
+    text = "".join(f"{key}: {value}\r\n" for key, value in lines.items() if key != name)
+    text += "".join(f"{name}: {value}\r\n" for value in values)
+    url = urlsplit(local)
+    with socket.create_connection((url.hostname, url.port), 10) as client:
+        client.sendall(f"POST /mcp HTTP/1.1\r\n{text}\r\n".encode())
+        assert client.recv(1000).startswith(f"HTTP/1.1 {status} ".encode())
 
 
 def test_bodies_have_a_limit(local: str) -> None:
@@ -176,6 +217,31 @@ async def test_other_machines_connect_by_names_that_were_told(empty: Path) -> No
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "0.0.0.0", "0", "00", "0x0", "0.0", "0.0.0", "000.0.0.0", "0x0.0.0.0", "[::]", "[::0]", "[0:0:0:0:0:0:0:0]",
+        "[::ffff:0.0.0.0]", "[::ffff:0:0]", "[0:0:0:0:0:FFFF:0:0]", "[::0.0.0.0]", "[::%1]",
+        "\uff10.\uff10.\uff10.\uff10", "every.example",
+    ],
+)  # fmt: skip
+def test_every_spelling_of_all_addresses_needs_names(empty: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    found = socket.getaddrinfo
+    monkeypatch.setattr(
+        socket, "getaddrinfo", lambda host, *a, **k: found(host.replace("every.example", "::"), *a, **k)
+    )
+    with pytest.raises(HttpRefused, match="needs a token"):
+        application(build_server(empty), address(f"{text}:0"), None)
+    with pytest.raises(HttpRefused, match="--allow-host NAME"):
+        application(build_server(empty), address(f"{text}:0"), TOKEN)
+
+
+@pytest.mark.parametrize("name", ["", "0", "0.0.0.0", "[::]", "*", "http://robots.example", "a@b", "a b"])
+def test_names_that_are_none(empty: Path, name: str) -> None:
+    with pytest.raises(HttpRefused, match="--allow-host"):
+        application(build_server(empty), Address("0.0.0.0", 80), TOKEN, [name])
+
+
+@pytest.mark.parametrize(
     ("text", "read", "loopback"),
     [
         ("8000", ("127.0.0.1", 8000), True),
@@ -184,6 +250,10 @@ async def test_other_machines_connect_by_names_that_were_told(empty: Path) -> No
         ("[::1]:65535", ("::1", 65535), True),
         ("0.0.0.0:0", ("0.0.0.0", 0), False),
         ("localhost.evil.example:1", ("localhost.evil.example", 1), False),
+        ("127.1:1", ("127.0.0.1", 1), True),
+        ("[::ffff:127.0.0.1]:1", ("127.0.0.1", 1), True),
+        ("LocalHost.:1", ("localhost", 1), True),
+        ("2130706433:1", ("127.0.0.1", 1), True),
     ],
 )
 def test_addresses(text: str, read: tuple[str, int], loopback: bool) -> None:

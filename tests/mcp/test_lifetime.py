@@ -45,7 +45,7 @@ def test_end_of_input_ends_server_and_worker(wire: Wire, workspace: Path) -> Non
     assert len(workers) == 1
     assert wire.process.stdin is not None
     wire.process.stdin.close()
-    wait_until_gone([*workers, wire.process.pid], 3)
+    wait_until_gone([*workers, wire.process.pid], 8)
     assert wire.process.wait() == 0
     assert [path.name for path in workspace.iterdir()] == [".irsim"]
 

@@ -32,7 +32,8 @@ from mcp.types import (
 )
 from pydantic import BaseModel, Field
 
-from irsim_mcp.http import address, serve
+from irsim_mcp.hosts import address
+from irsim_mcp.http import serve
 from irsim_mcp.server import IrsimServer, build_server
 
 PNG = base64.b64encode(

@@ -1,0 +1,134 @@
+"""Addresses to listen at, and the values of Host and Origin with which clients show that they mean this server."""
+
+from __future__ import annotations
+
+import ipaddress
+import re
+import socket
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+__all__ = ["Address", "HttpRefused", "address", "allowed_hosts", "anywhere", "host_of", "why_refused"]
+
+_LOOPBACK = ("127.0.0.1", "localhost", "::1")
+_AUTHORITY = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(?::[0-9]{1,5})?")
+_ORIGIN = re.compile(rf"https?://({_AUTHORITY.pattern})", re.IGNORECASE)
+_NUMBERS = re.compile(r"[0-9][0-9a-fx.]*")
+
+
+class HttpRefused(ValueError):
+    """Options with which serving would be unsafe or impossible."""
+
+
+class Address(NamedTuple):
+    """Host, in its one spelling (see :func:`host_of`), and port to listen at."""
+
+    host: str
+    port: int
+
+    @property
+    def loopback(self) -> bool:
+        """Whether only this machine can connect."""
+        try:
+            return self.host == "localhost" or ipaddress.ip_address(self.host).is_loopback
+        except ValueError:
+            return False
+
+    @property
+    def name(self) -> str:
+        """The host as it appears in a URL."""
+        return f"[{self.host}]" if ":" in self.host else self.host
+
+
+def address(text: str) -> Address:
+    """Read ``[HOST:]PORT``; without a host it is 127.0.0.1.
+
+    Args:
+        text: Text such as ``8000``, ``127.0.0.1:8000`` or ``[::1]:8000``; port 0 chooses a free port.
+    """
+    host, _, port = text.rpartition(":")
+    if ":" in host and not (host.startswith("[") and host.endswith("]")):
+        raise ValueError(f"{text} is not [HOST:]PORT; write IPv6 addresses as [::1]:8000")
+    host = host.removeprefix("[").removesuffix("]")
+    if not re.fullmatch(r"[0-9]{1,5}", port) or int(port) > 65535 or (":" in text and not host):
+        raise ValueError(f"{text} is not [HOST:]PORT")
+    return Address(host_of(host) if host else "127.0.0.1", int(port))
+
+
+def host_of(text: str) -> str:
+    """The one spelling of a host: lower case, and the usual form of an address.
+
+    ``0`` is 0.0.0.0, ``127.1`` is 127.0.0.1, and ``::ffff:1.2.3.4``, which reaches the same clients, is 1.2.3.4.
+    """
+    host = text.lower().removeprefix("[").removesuffix("]").removesuffix(".")
+    try:
+        known = ipaddress.ip_address(host)
+    except ValueError:
+        if not _NUMBERS.fullmatch(host):
+            return host
+        try:
+            return socket.inet_ntoa(socket.inet_aton(host))  # spellings that the operating system accepts: 0, 127.1
+        except OSError:
+            return host
+    mapped = known.ipv4_mapped if isinstance(known, ipaddress.IPv6Address) else None
+    return str(mapped or known)
+
+
+def anywhere(where: Address) -> bool:
+    """Whether a server listens at every address of this machine, also if that address is given by a name."""
+    try:
+        found = [str(one[4][0]) for one in socket.getaddrinfo(where.host, where.port, type=socket.SOCK_STREAM)]
+    except (OSError, UnicodeError):  # binding will say why
+        found = []
+    return any(_unspecified(host_of(host)) for host in (where.host, *found))
+
+
+def _unspecified(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_unspecified
+    except ValueError:
+        return False
+
+
+def allowed_hosts(where: Address, names: Sequence[str]) -> frozenset[str]:
+    """The hosts that requests may name.
+
+    Args:
+        where: Host and port of the server.
+        names: Names and addresses of ``--allow-host``, with or without a port.
+
+    Raises:
+        HttpRefused: A name is none.
+    """
+    more = []
+    for name in names:
+        match = _AUTHORITY.fullmatch(name) or _AUTHORITY.fullmatch(f"[{name}]")
+        host = host_of(match[1]) if match is not None else ""
+        if not host or _unspecified(host):
+            raise HttpRefused(f"--allow-host {name!r}: give a name or an address that clients connect to")
+        more.append(host)
+    own = _LOOPBACK if where.loopback else ()
+    return frozenset((*own, where.host, *more))
+
+
+def why_refused(headers: Iterable[tuple[bytes, bytes]], allowed: frozenset[str]) -> tuple[int, str] | None:
+    """Why a request is not from a client of this server: status and text; None if it is.
+
+    Pages of other sites are kept out: they send their own Origin, or a Host that was made to lead here.
+
+    Args:
+        headers: Names, in lower case, and values of the headers.
+        allowed: The hosts that may be named.
+    """
+    hosts, origins = ([v.decode("latin-1") for n, v in headers if n == name] for name in (b"host", b"origin"))
+    if len(hosts) > 1:
+        return 400, "Several Host headers"
+    match = _AUTHORITY.fullmatch(hosts[0]) if hosts else None
+    if match is None or host_of(match[1]) not in allowed:
+        return 421, "Invalid Host header"
+    if not origins:
+        return None
+    match = _ORIGIN.fullmatch(origins[0]) if len(origins) == 1 else None
+    if match is None or host_of(match[2]) not in allowed:
+        return 403, "Invalid Origin header"
+    return None
