@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from irsim.diagnostics.diagnostic import Diagnostic
@@ -17,6 +17,7 @@ __all__ = [
     "IrsimError",
     "NotSimulatedError",
     "OverLimitError",
+    "PickledWhole",
     "PlacementError",
     "PolicyError",
     "PolicyLostError",
@@ -26,7 +27,21 @@ __all__ = [
 ]
 
 
-class IrsimError(Exception):
+class PickledWhole:
+    """An exception that pickle and other processes return as it was, whatever its constructor takes."""
+
+    def __reduce__(self) -> Any:
+        return _restore_error, (type(self), self.args, self.__dict__)  # type: ignore[attr-defined] # of BaseException
+
+
+def _restore_error(kind: type[BaseException], args: tuple[Any, ...], attributes: dict[str, Any]) -> BaseException:
+    error = kind.__new__(kind, *args)
+    error.args = args
+    error.__dict__.update(attributes)
+    return error
+
+
+class IrsimError(PickledWhole, Exception):
     """Base of all errors that irsim raises on purpose."""
 
 

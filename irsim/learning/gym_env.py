@@ -22,6 +22,8 @@ import gymnasium
 __all__ = ["Env"]
 
 RENDER_MODES = ("rgb_array", "human")
+RESET_FIX = "call reset(), which starts the next one"
+"""The advice to programs that step an environment without an episode."""
 
 
 class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # types of an extra are not read
@@ -61,6 +63,7 @@ class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # type
         self.action_space = action_space(self.worlds)
         self._camera = Camera(self.worlds, human=render_mode == "human")
         self._fresh = True
+        self._over = False
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -76,7 +79,7 @@ class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # type
         """
         super().reset(seed=seed)
         begin(self.worlds, seed, options, fresh=self._fresh)
-        self._fresh = False
+        self._fresh = self._over = False
         self._show()
         return self.worlds.observe()[0], drawn_facts(self.worlds)
 
@@ -89,17 +92,16 @@ class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # type
 
         Raises:
             ArgumentError: The action has another shape, or is not finite.
+            ResetNeeded: The episode is over.
         """
+        if self._over:
+            raise gymnasium.error.ResetNeeded(f"the episode is over; {RESET_FIX}")
         result = self.worlds.step(np.asarray(action)[None])
         self._show()
         info = facts(result, 0) | drawn_facts(self.worlds)
-        return (
-            self.worlds.observe()[0],
-            float(result.reward[0, 0]),
-            bool(result.terminated[0, 0]),
-            bool(result.truncated[0, 0]),
-            info,
-        )
+        terminated, truncated = bool(result.terminated[0, 0]), bool(result.truncated[0, 0])
+        self._over = terminated or truncated
+        return self.worlds.observe()[0], float(result.reward[0, 0]), terminated, truncated, info
 
     def render(self) -> Any:
         """The picture of the present state, (H, W, 3) uint8; None with ``human``, which shows it anyway."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from irsim.common.extras import require
 from irsim.learning.gym_env import (
     RENDER_MODES,
+    RESET_FIX,
     action_space,
     begin,
     check_render_mode,
@@ -22,8 +23,9 @@ from irsim.learning.pictures import Camera
 from irsim.learning.tasks.files import TaskSource
 from irsim.learning.worlds import Worlds
 
-require("gym", "pettingzoo")
+require("gym", "pettingzoo", "gymnasium")
 import pettingzoo
+from gymnasium.error import ResetNeeded
 
 __all__ = ["ParallelEnv"]
 
@@ -118,9 +120,10 @@ class ParallelEnv(pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):  # t
         Raises:
             KeyError: The action of an agent is missing.
             ArgumentError: An action has another shape, or is not finite.
+            ResetNeeded: There are no agents: the episode is over, or has not begun.
         """
         if not self.agents:
-            return {}, {}, {}, {}, {}
+            raise ResetNeeded(f"no episode is under way; {RESET_FIX}")
         idle = np.zeros_like(np.asarray(actions[self.agents[0]]))
         acting = set(self.agents)
         given = [actions[agent] if agent in acting else idle for agent in self.possible_agents]

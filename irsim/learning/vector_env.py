@@ -19,6 +19,7 @@ from irsim.learning.workers.divided import AnyWorlds, open_worlds
 from irsim.learning.worlds import Autoreset, Worlds
 
 require("gym", "gymnasium")
+from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector import VectorEnv as GymnasiumVectorEnv
 from gymnasium.vector.utils import batch_space
@@ -138,11 +139,12 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         """Advance all worlds by one period.
 
         Raises:
-            ArgumentError: The actions have another shape, or are not finite; or, without autoreset, a world is over.
+            ArgumentError: The actions have another shape, or are not finite.
+            ResetNeeded: A world is over, and ``autoreset_mode`` is ``Disabled``.
         """
         worlds, before = self.worlds, self._over
         if self._mode is AutoresetMode.DISABLED and before.any():
-            raise ArgumentError("a world is over", 'start its next episode: reset(options={"reset_mask": mask})')
+            raise ResetNeeded('a world is over; start its next episode: reset(options={"reset_mask": mask})')
         step = worlds.advance(worlds.read(actions), _RESETS[self._mode], out=self._observed)
         result, seen = step.result, step.seen
         reward, terminated, truncated = (

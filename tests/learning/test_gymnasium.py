@@ -8,6 +8,7 @@ import gymnasium
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from gymnasium.error import ResetNeeded
 from gymnasium.utils.env_checker import check_env
 from gymnasium.wrappers import NormalizeObservation, RecordEpisodeStatistics
 from gymnasium.wrappers import vector as vector_wrappers
@@ -71,13 +72,25 @@ def test_slots_equal_single_environments(made: dict[str, Any], mode: str) -> Non
     assert episodes > 4
 
 
+@pytest.mark.parametrize("id_", ["irsim/GoalLidar-v0", None])
+def test_an_episode_that_is_over_is_not_stepped(id_: str | None) -> None:
+    env = Env(MADE["controls"]) if id_ is None else gymnasium.make(id_)
+    env.reset(seed=0)
+    while not any(env.step(env.action_space.sample())[2:4]):
+        pass
+    with pytest.raises(ResetNeeded, match=r"the episode is over; call reset\(\)"):
+        env.step(env.action_space.sample())
+    env.reset()
+    env.step(env.action_space.sample())
+
+
 def test_worlds_are_reset_by_a_mask() -> None:
     env = VectorEnv(lidar_among_boxes(horizon=0.5), 3, autoreset_mode="Disabled")
     before, _ = env.reset(seed=0)
     for _ in range(5):
         seen, _, _, truncated, _ = env.step(np.zeros((3, 2)))
     assert truncated.all()
-    with pytest.raises(ArgumentError, match="a world is over"):
+    with pytest.raises(ResetNeeded, match="a world is over"):
         env.step(np.zeros((3, 2)))
     mask = np.array([False, True, True])
     after, _ = env.reset(options={"reset_mask": mask})
@@ -156,7 +169,8 @@ def test_robots_that_have_arrived_leave() -> None:
     assert list(seen) == ["bob"]
     env.step({"bob": ahead})
     assert env.agents == []
-    assert env.step({}) == ({}, {}, {}, {}, {})
+    with pytest.raises(ResetNeeded, match=r"call reset\(\)"):
+        env.step({})
     assert env.reset()[0].keys() == {"ann", "bob"}
 
 

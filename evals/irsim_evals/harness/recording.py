@@ -19,7 +19,7 @@ from typing import Any, Literal
 from pydantic import ValidationError
 
 import irsim
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import ArgumentError, PickledWhole
 from irsim_evals.cases.store import Instance, case_of, given_pictures
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import failed_verdict
@@ -40,7 +40,7 @@ _RUN = re.compile(r"\b[a-z0-9_-]+-[0-9a-f]{6}\b")
 _NAMED = re.compile(r"\$run\d+\b")
 
 
-class RecordingEnds(RuntimeError):
+class RecordingEnds(PickledWhole, RuntimeError):
     """A recording that is replayed has no further answer of the model.
 
     Attributes:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.errors import PickledWhole
 
 __all__ = [
     "OCCUPIED",
@@ -39,7 +40,7 @@ def cells_along(length: float, size: float) -> int:
     return max(1, round(min(length / size, _MAX_CELLS_ALONG)))
 
 
-class MapProblem(Exception):
+class MapProblem(PickledWhole, Exception):
     """The reason why a map cannot be made, with the fields of a diagnostic.
 
     Attributes:
