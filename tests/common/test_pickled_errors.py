@@ -24,7 +24,7 @@ _DEFINES = re.compile(r"^class \w+\(.*(Error|Exception)\b.*\):", re.MULTILINE)
 def _exceptions() -> Iterator[type[BaseException]]:
     """All exception classes of modules that can be imported here."""
     for package in (irsim, irsim_mcp, irsim_evals):
-        root = Path(package.__path__[0])
+        root = Path(str(package.__file__)).parent
         for file in sorted(root.rglob("*.py")):
             if not _DEFINES.search(file.read_text(encoding="utf-8")):
                 continue
