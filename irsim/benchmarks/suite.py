@@ -35,7 +35,9 @@ from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
 from irsim.diagnostics.diagnostic import Path as Path_
 from irsim.diagnostics.errors import CodedError
+from irsim.options.units import MAX_WHOLE, Value
 from irsim.scenario.file_kind import MOST_PROBLEMS, FileKind, explained
+from irsim.scenario.limits import MAX_STEPS
 from irsim.scenario.perturbation import Perturbation
 from irsim.scenario.yaml.document import Document, load_path
 
@@ -53,7 +55,6 @@ __all__ = [
 
 Protocol = Literal["as-written", "freeze", "yield"]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_.-]{0,63}$")]
-Value = bool | int | float | str
 Combined = dict[str, Annotated[list[Any], Field(min_length=1)]]
 Listed = Annotated[list[Annotated[dict[str, Any], Field(min_length=1)]], Field(min_length=1)]
 MAX_SCENARIOS = 200
@@ -81,7 +82,7 @@ class SuiteScenario(_Part):
     """Parameter of the template, or path of a key such as ``robot[0].number`` → values; each combination is a scenario.
     Or a list of mappings of keys to one value each, such as ``[{"robot[0].number": 2, "robot[1].number": 4}]``; each
     mapping is a scenario, so that values change together."""
-    steps: Annotated[int, Field(ge=1)] | None = None
+    steps: Annotated[int, Field(ge=1, le=MAX_STEPS)] | None = None
     """Horizon of these scenarios in steps; null takes the suite's."""
 
     def variants(self) -> Iterator[dict[str, Any]]:
@@ -128,7 +129,7 @@ class Suite(_Part):
 
     suite: Name
     """Name of the suite; a bundled one has the name of its file."""
-    version: Annotated[int, Field(ge=1)]
+    version: Annotated[int, Field(ge=1, le=MAX_WHOLE)]
     """Version of the suite: results of different versions are not comparable."""
     title: Annotated[str, Field(min_length=1, max_length=100)]
     """Its subject, in one line."""
@@ -140,7 +141,7 @@ class Suite(_Part):
     """The scenarios."""
     seeds: Seeds = Seeds()
     """Seeds of the episodes."""
-    steps: Annotated[int, Field(ge=1)]
+    steps: Annotated[int, Field(ge=1, le=MAX_STEPS)]
     """Horizon in steps; in seconds it is this number times the ``step_time`` of the scenario, 0.1 s by default."""
     protocols: Annotated[list[Protocol], Field(min_length=1)] = ["as-written"]
     """Robots that have arrived stand still (``freeze``), stay controlled so that they can make room (``yield``), or do

@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Field
 
 import irsim._core as core
 from irsim.options.base import Options
-from irsim.options.units import Bool, Count, Integer, Meters, Number, Seconds
+from irsim.options.units import MAX_VERTICES, Bool, Count, Integer, Meters, Number, Seconds
 from irsim.options.vectors import Component, Point, Pose, vector
 
 __all__ = [
@@ -163,10 +163,13 @@ class ShapeOptions(Options):
     """Distance between the axles, for `acker`; rectangles and circles then have their origin at the rear axle."""
 
 
+Vertices = Annotated[Integer, Field(ge=3, le=MAX_VERTICES)]
+
+
 class RandomOutline(ShapeOptions):
     """Parameters of randomly drawn vertices."""
 
-    vertices: list[Point] | None = None
+    vertices: Annotated[list[Point], Field(max_length=MAX_VERTICES)] | None = None
     """Corners in the body frame, used as given; the object's `state` moves and turns them."""
     random_shape: Bool = False
     """Draw random vertices for every scene instead; with `number`, each object has its own."""
@@ -178,7 +181,7 @@ class RandomOutline(ShapeOptions):
     """Range of the unevenness of the angles between vertices: 0 is even, 1 very uneven."""
     spikeyness_range: Annotated[list[Annotated[Component, Field(ge=0, le=1)]], vector(("1", "1"), 2)] | None = None
     """Range of the variation of distances from the middle (0: no variation); null is [0, 1], or [0, 0] if convex."""
-    num_vertices_range: Annotated[list[Annotated[Integer, Field(ge=3)]], vector(("1", "1"), 2)] = [4, 10]
+    num_vertices_range: Annotated[list[Vertices], vector(("1", "1"), 2)] = [4, 10]
     """Range of the number of vertices: the smallest number, and one more than the largest."""
     number: Annotated[Integer, Field(ge=1, le=1)] = 1
     """Number of outlines per object, which is always 1."""
@@ -282,7 +285,7 @@ class SamplingPlanner(PlannerOptions):
     """Extensions end at multiples of this length; collisions are checked all along."""
     goal_sample_rate: Annotated[Number, Field(ge=0, le=100)] = 5.0
     """Share of samples placed at the goal, in percent."""
-    max_iter: Count = 500
+    max_iter: Annotated[Count, Field(le=100_000)] = 500
     """Largest number of samples."""
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from irsim.common.arguments import check_whole_number
 from irsim.diagnostics.errors import OverLimitError
 from irsim.env import Env
+from irsim.options.units import MAX_SECONDS
 from irsim.results.run import HorizonSource
 from irsim.scenario.limits import Limits
 from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
@@ -54,7 +55,7 @@ def default_time_limit(simulation: Simulation) -> float:
         if (speed := view.max_speed) > 0:
             longest = max(longest, way / speed)
         starts.append(record.moves_from + (record.spreads.delay if record.spreads else 0.0))
-    return max(MIN_HORIZON, HORIZON_FACTOR * longest) + max(starts)
+    return min(max(MIN_HORIZON, HORIZON_FACTOR * longest) + max(starts), MAX_SECONDS)
 
 
 def horizon_of(simulation: Simulation, steps: int | None, limits: Limits) -> tuple[int, HorizonSource]:

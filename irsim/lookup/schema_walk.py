@@ -10,6 +10,7 @@ from typing import Any
 
 from irsim.common.text import listed
 from irsim.lookup.answer import Key
+from irsim.options.units import MAX_TOLD
 
 __all__ = [
     "COLOR",
@@ -35,8 +36,6 @@ _NUMBER_BOUNDS = {
     "exclusiveMaximum": "less than",
 }
 COLOR = "A color is a name, `'#3366cc'`, a grey level as text (`'0.5'`), or `[r, g, b]` from 0 to 1."
-MAX_MEANINGFUL_BOUND = 2.0**53
-"""Larger bounds only say how the number is stored, so they are not shown."""
 MAX_NAMES = 24
 """Longer lists of allowed names are cut off."""
 _TYPE_WORDS = {
@@ -230,7 +229,7 @@ def _range(option: Node) -> str:
     bounds = [(words, option[bound]) for bound, words in _NUMBER_BOUNDS.items() if bound in option]
     if option.get("exclusiveMinimum", -math.inf) >= option.get("minimum", math.inf):
         bounds = [(words, bound) for words, bound in bounds if words != _NUMBER_BOUNDS["minimum"]]
-    return ", ".join(f"{words} {bound:g}" for words, bound in bounds if abs(bound) < MAX_MEANINGFUL_BOUND)
+    return ", ".join(f"{words} {bound:g}" for words, bound in bounds if abs(bound) <= MAX_TOLD)
 
 
 def _digest(node: Node) -> str:

@@ -9,6 +9,8 @@ from pydantic import Field, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
+from irsim.options.units import MAX_METERS
+
 __all__ = [
     "LIST",
     "MAPPING",
@@ -36,7 +38,7 @@ def vector(units: Sequence[str], low: int, high: int | None = None) -> Any:
     return Field(min_length=low, max_length=most, json_schema_extra={"x-units": list(units)})
 
 
-Component = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Component = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-MAX_METERS, le=MAX_METERS)]
 """A number of a vector; the vector states the units."""
 Point = Annotated[list[Component], vector(("m", "m"), 2)]
 Offset = Annotated[list[Component], vector(("m", "m", "rad"), 3)]

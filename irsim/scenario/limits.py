@@ -6,7 +6,10 @@ from dataclasses import dataclass
 
 from irsim.common.yaml.limits import YamlLimits
 
-__all__ = ["DEFAULT_LIMITS", "Limits"]
+__all__ = ["DEFAULT_LIMITS", "MAX_STEPS", "Limits"]
+
+MAX_STEPS = 100_000_000
+"""Most steps of one run."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,7 @@ class Limits(YamlLimits):
     objects: int = 100_000
     robots: int = 100_000
     root: str | None = None
-    steps: int | None = None
+    steps: int | None = MAX_STEPS
     work: int | None = None
     cells: int = 64_000_000
     map_bytes: int = 256 * 1024 * 1024

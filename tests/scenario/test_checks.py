@@ -232,7 +232,7 @@ CASES: list[tuple[dict[str, Any], str]] = [
     (robot(**CAR, vel_max=[1, 30]), "warning steering-limit robot[0].vel_max"),
     (turned("omni", [9, 9, 1]), "warning heading-not-reached robot[0].arrive_mode"),
     (turned("acker", [9, 9, 1]), "warning heading-not-reached robot[0].arrive_mode"),
-    ({"world": {"width": 1e308}}, "error too-large world.width"),
+    ({"world": {"width": 1e8}}, "error too-large world.width"),
     (robot(description="file:///x.png"), "warning image-not-found robot[0].description"),
     (robot(goal=[9.9, 4], **SMALL), "hint outside-world robot[0].goal"),
     ({"world": {"collision_mode": "stop"}, **CLOSE}, "warning initial-overlap robot[0].state"),

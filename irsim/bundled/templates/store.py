@@ -24,13 +24,13 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from irsim.common import data_files as resources
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import CodedError
+from irsim.options.units import Value
 
 __all__ = [
     "Outcome",
     "Parameter",
     "Template",
     "TemplateError",
-    "Value",
     "find",
     "load",
     "load_all",
@@ -40,7 +40,6 @@ __all__ = [
     "scenario_file",
 ]
 
-Value = bool | int | float | str
 Outcome = Literal["success", "collision", "timeout"]
 
 

@@ -10,7 +10,7 @@ import irsim._core as core
 from irsim.components.maps._site import MapSite, Noise, Raster, cells_along
 from irsim.components.options import MapOptions
 from irsim.options.registry import MAPS
-from irsim.options.units import Fraction, Integer, Meters, Number
+from irsim.options.units import Fraction, Integer, Meters, Number, Seed
 
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
@@ -34,7 +34,7 @@ class PerlinMap(MapOptions):
     """Number of octaves: each adds finer detail."""
     attenuation: Annotated[Number, Field(gt=0)] = 0.5
     """Amplitude of octave k, counted from 0, is this divided by k + 1."""
-    seed: Annotated[Integer, Field(ge=0)] | None = None
+    seed: Seed | None = None
     """Seed of the noise, for the same map every time; null draws a new map for every scene from the scenario's seed."""
 
 

@@ -18,9 +18,9 @@ class Prm(PlannerOptions):
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "prm", "n_sample": 500}]}
 
     name: Literal["prm"] = "prm"
-    n_sample: Annotated[Integer, Field(ge=1)] = 500
+    n_sample: Annotated[Integer, Field(ge=1, le=10_000)] = 500
     """Number of random free points."""
-    n_knn: Annotated[Integer, Field(ge=1)] = 10
+    n_knn: Annotated[Integer, Field(ge=1, le=100)] = 10
     """Largest number of edges per point."""
     max_edge_len: Annotated[Meters, Field(gt=0)] = 30.0
     """Longest edge."""

@@ -18,8 +18,9 @@ from irsim.diagnostics.diagnostic import Diagnostic, suggestion
 from irsim.diagnostics.errors import InputError
 from irsim.episodes.opening import unopened_bridges
 from irsim.learning.tasks.files import TaskError, task_error
-from irsim.learning.tasks.task import Task, Value
+from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.variation import LevelDraws, drawn_values, level_draws, randomize_path
+from irsim.options.units import Value
 from irsim.scenario.perturbation import perturbed
 from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Variation, VariedLevel

@@ -26,7 +26,7 @@ from pydantic import AfterValidator, Field, model_validator
 from irsim.learning.rewards._options import REWARDS, RewardOptions
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
-from irsim.options.units import Bool, Fraction, Integer, Number, Seconds
+from irsim.options.units import Bool, Fraction, Integer, Number, Seconds, Value
 from irsim.policies.networks.document import Meaning, OutputOptions
 from irsim.policies.networks.layout import Layout
 from irsim.policies.networks.parts._options import PARTS, PartOptions
@@ -41,12 +41,10 @@ __all__ = [
     "Randomize",
     "Seeds",
     "Task",
-    "Value",
     "merged",
 ]
 
 
-Value = bool | int | float | str
 QUANTITIES = ("number", "size", "speed", "acceleration", "sensor_noise", "latency")
 """Quantities drawn for objects of the scenario, in the order of the keys."""
 

@@ -13,8 +13,9 @@ import numpy as np
 from irsim.common.text import clean, listed, plural
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.learning.tasks.files import task_error
-from irsim.learning.tasks.task import QUANTITIES, Randomize, Task, Value, merged
+from irsim.learning.tasks.task import QUANTITIES, Randomize, Task, merged
 from irsim.learning.tasks.team import team_of
+from irsim.options.units import Value
 from irsim.scenario.resolve.resolved import DrawnQuantity, ObjectRecord, ResolvedScenario
 from irsim.simulation.random_streams import generator
 from irsim.simulation.roles import HUMAN, kinds_of

@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from irsim.diagnostics.codes import CODES
 from irsim.diagnostics.diagnostic import Edit, Path, format_path, is_slip_of, nearest
+from irsim.options.units import MAX_TOLD
 from irsim.options.vectors import is_vector
 from irsim.scenario.messages.advice import advice_on_key, split_poses, split_waypoints, vector_of
 from irsim.scenario.messages.findings import Finding, error, key_path
@@ -202,11 +203,13 @@ class Explainer:
         )
 
     def _bound(self) -> Finding:
+        sources = [_bounds_of(part) for part in (self.field.metadata if self.field else ())]
         limits = {}
         for name, sign in _BOUNDS.values():
-            sources = [self.context, *(_bounds_of(part) for part in (self.field.metadata if self.field else ()))]
-            limit = next((source[name] for source in sources if source.get(name) is not None), None)
-            if limit is not None:
+            inner = max if name in ("gt", "ge") else min
+            given = [source[name] for source in sources if source[name] is not None]
+            limit = self.context.get(name, inner(given) if given else None)
+            if limit is not None and (name in self.context or abs(limit) <= MAX_TOLD):
                 limits[name] = f"{sign} {number(limit)}"
         allowed = " and ".join(limits.values()) + self._unit()
         return self._error(

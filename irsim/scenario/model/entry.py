@@ -27,9 +27,11 @@ __all__ = ["Entry"]
 
 Text = Annotated[str, Field(strict=True)]
 Unbounded = Annotated[float, Field(strict=True, ge=0)]  # infinity is fine, NaN is not
-State = Annotated[list[Component], Field(json_schema_extra={"x-units": ["m", "m", "rad"]})]
-Control = Annotated[list[Component], Field(min_length=1, json_schema_extra={"x-unit": "control units"})]
-Rates = Annotated[list[Unbounded], Field(min_length=1, json_schema_extra={"x-unit": "control units / s"})]
+State = Annotated[list[Component], Field(max_length=64, json_schema_extra={"x-units": ["m", "m", "rad"]})]
+_Sizes = Field(min_length=1, max_length=64)
+Control = Annotated[list[Component], _Sizes, Field(json_schema_extra={"x-unit": "control units"})]
+Rates = Annotated[list[Unbounded], _Sizes, Field(json_schema_extra={"x-unit": "control units / s"})]
+Waypoints = Annotated[list[Pose], Field(min_length=1, max_length=100_000)]
 Mass = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg"})]
 Inertia = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg m^2"})]
 Delay = Annotated[Seconds, Field(ge=0)]
@@ -108,7 +110,7 @@ class Entry(Options):
     goal: Annotated[Any, PerObject(Annotated[Any, PerObject(Pose, "vector")] | None, "vector")] = None
     """Goal [x, y] or [x, y, theta]; null is [1, 9, 0]. A list of vectors is one goal per object; several goals for
     each object go under `waypoints`, or need three levels of brackets."""
-    waypoints: Annotated[Any, PerObject(Annotated[list[Pose], Field(min_length=1)] | None, "path")] = None
+    waypoints: Annotated[Any, PerObject(Waypoints | None, "path")] = None
     """Goals to visit one after the other: [[x, y], [x, y, theta], ...]."""
     start_time: Annotated[Any, PerObject(Delay, "number")] = 0.0
     """Time from which the object moves. Until then it stands at its start, where others see it and collide with it,

@@ -29,7 +29,6 @@ INEXPRESSIBLE: dict[str, str] = {
     "yaml-sexagesimal": "the parsed value is an ordinary number",
     "yaml-octal": "the parsed value is an ordinary number",
     "not-a-number": "JSON has no NaN, and bounds do not exclude it",
-    "infinite-number": "JSON has no infinity, and bounds in one direction do not exclude it",
     "wrong-length (control vectors)": "the length of vel_min, vel_max, acce and velocity depends on the kinematics",
     "range-order": "a schema cannot compare two numbers of the document",
     "limits-order": "a schema cannot compare two numbers of the document",

@@ -11,7 +11,7 @@ from irsim.options.base import Options, problem
 from irsim.options.colors import Color
 from irsim.options.registry import MAPS
 from irsim.options.selection import Select
-from irsim.options.units import Bool, Fraction, Integer, Meters, Number, Seconds
+from irsim.options.units import MAX_METERS, Bool, Fraction, Meters, Number, Seconds, Seed
 from irsim.options.vectors import OrNull, Point, vector
 from irsim.scenario.model.zones import Zone
 
@@ -26,7 +26,12 @@ def _normalize_word(value: Any) -> Any:
 
 _VIEWPOINT = {
     "anyOf": [
-        {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+        {
+            "type": "array",
+            "items": {"type": "number", "minimum": -MAX_METERS, "maximum": MAX_METERS},
+            "minItems": 2,
+            "maxItems": 2,
+        },
         {"type": "string"},
         {"type": "null"},
     ],
@@ -35,7 +40,7 @@ _VIEWPOINT = {
 
 
 def _is_finite(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 1e300
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= MAX_METERS
 
 
 def _viewpoint(value: Any) -> list[float] | str | None:
@@ -139,18 +144,18 @@ class WorldModel(Options):
     """Extent in z, used only to draw the 3D view: the world is flat."""
     offset: Annotated[Point, OrNull([0.0, 0.0])] = [0.0, 0.0]
     """Lower left corner of the world: [x, y]. Objects do not move with it."""
-    step_time: Annotated[Seconds, Field(gt=0)] = 0.1
+    step_time: Annotated[Seconds, Field(ge=1e-6, le=1e4)] = 0.1
     """Period of one simulation step, within which controls are constant. It also sets the accuracy of motion: see
     `integration`."""
     integration: Annotated[Literal["euler", "exact"], BeforeValidator(_normalize_word)] = "euler"
     """How drives move within a step: straight along the heading at its start, then the turn (`euler`, as in IR-SIM
     2.12), or on the arc of the control (`exact`). Of a circle at 1 m/s and 0.8 rad/s, Euler's position is off by 0.10 m
     after 4 s with a `step_time` of 0.1 s, and by 1.0 m with 1 s; arcs are exact at any step."""
-    sample_time: Annotated[Seconds, Field(gt=0)] | None = None
+    sample_time: Annotated[Seconds, Field(ge=1e-6)] | None = None
     """Period of drawing and recording; null is every step."""
     time_limit: Annotated[Seconds, Field(gt=0)] | None = None
     """Longest duration of a run, unless its caller gives one; null derives it from distances and speeds."""
-    seed: Annotated[Integer, Field(ge=0, lt=2**64)] | None = None
+    seed: Seed | None = None
     """Seed of everything random, unless the caller gives one; null draws a new seed."""
     step_mode: Annotated[Literal["internal", "external"], BeforeValidator(_normalize_word)] = "internal"
     """Who moves the objects: the simulator (`internal`), or the calling program (`external`), which sets their
@@ -172,7 +177,7 @@ class WorldModel(Options):
     """Edge of the world: nothing, or four walls that objects collide with, see and avoid."""
     obstacle_map: Annotated[Any, _MapSelect(MAPS, null=True, short=("image", "path"))] = None
     """Occupancy grid over the world: an image file name, or a mapping with a generator's name and options."""
-    mdownsample: Annotated[int, Field(strict=True, ge=1), OrNull(1)] = 1
+    mdownsample: Annotated[int, Field(strict=True, ge=1, le=10_000), OrNull(1)] = 1
     """Keep every Nth row and column of the grid."""
     zones: Annotated[list[Zone], Field(max_length=1000), OrNull([])] = []
     """Named lines and areas that are watched: who crosses, enters and leaves them, and when. Without effect on
