@@ -17,7 +17,8 @@
 - ``interop``: bridges, each against software that somebody else wrote: middleware, simulators, parsers, a browser.
 - ``onnx``: policies from ONNX models, with onnxruntime.
 - ``nightly``: what is too large for every change, and therefore no part of ``full``: Blender reads what we write;
-  each day another tenth of the bench of avoidance; all tests that rotate, of which ``slow`` runs those of the day.
+  each day another tenth of the bench of avoidance; all tests that rotate, of which ``slow`` runs those of the day;
+  ``neupan``, the examples of NeuPAN, where ``NEUPAN_SRC`` names a folder of it.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 All quick tests together run in ``check``, and on the newest Python in the README's own test command, with which
@@ -293,6 +294,19 @@ def nightly(session: nox.Session) -> None:
     timed(session, "another tenth of avoidance", "pytest", *options, env={"IRSIM_NIGHTLY": "1"})
     rotating = ("-m", "rotates", "-n", "2", "--dist", "loadgroup", "--durations", "15")
     timed(session, "tests that rotate", "pytest", *rotating, env={"IRSIM_TESTS": "thorough"})
+    session.notify("neupan")
+
+
+@nox.session(reuse_venv=True, python=find_python(INTEROP))
+def neupan(session: nox.Session) -> None:
+    """NeuPAN's public examples, driven by the policy, with the folder of its repository that ``NEUPAN_SRC`` names."""
+    source = os.environ.get("NEUPAN_SRC")
+    if not source:
+        session.log("NEUPAN_SRC names no folder of NeuPAN, which is on no registry: its examples were not driven")
+        return
+    install(session, "-e", ".[test]", "-e", source)
+    options = ("-m", "slow", "-s", "tests/interop/test_neupan.py")
+    timed(session, "examples of NeuPAN", "pytest", *options, *session.posargs, env={"IRSIM_INTEROP": "required"})
 
 
 def install_debian(session: nox.Session, packages: Iterable[str]) -> None:

@@ -298,7 +298,10 @@ def _state(facts: EpisodeFacts, row: int, robot: RobotResult) -> str:
         return f"hardly moves {place}" + (f": {no_way}" if no_way else _obstruction_message(facts, row))
     if record.kinematics is None:
         return f"has no kinematics, so it stands still {place}"
-    if record.behavior is None and record.group_behavior is None:
+    if facts.policy is not None:
+        if remark := facts.policy.remarks().get(record.id):
+            return f"stands still {place}: {remark}"
+    elif record.behavior is None and record.group_behavior is None:
         if not facts.scenario.has_written_goal(record):
             return "has no behavior, so it stands still; no goal is written for it"
         return f"has no behavior, so it stands still {place}"

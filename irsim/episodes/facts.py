@@ -19,6 +19,7 @@ from irsim.simulation.outcome import explored_share
 from irsim.simulation.roles import humans_of
 
 if TYPE_CHECKING:
+    from irsim.policies.policy import Policy
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
     from irsim.simulation.simulation import Simulation
 
@@ -50,6 +51,7 @@ class EpisodeFacts:
         random: Names of the parts that the seed decides.
         explored: Share of the area of the world that the robots have seen; None without `fog_map`.
         is_small: Whether the trajectories of all objects can be searched.
+        policy: The policy that drives the robots instead of their behaviors.
     """
 
     simulation: Simulation
@@ -69,14 +71,16 @@ class EpisodeFacts:
     random: list[str]
     explored: float | None
     is_small: bool
+    policy: Policy | None = None
 
     @classmethod
-    def of(cls, simulation: Simulation, events: list[Event]) -> EpisodeFacts:
+    def of(cls, simulation: Simulation, events: list[Event], policy: Policy | None = None) -> EpisodeFacts:
         """Find the facts of an episode.
 
         Args:
             simulation: The simulation after the last step.
             events: All its events.
+            policy: The policy that drove the robots.
         """
         scenario, steps = simulation.scenario, int(simulation.count[0])
         robots = {row: record for row, record in enumerate(scenario.objects) if record.role == "robot"}
@@ -105,6 +109,7 @@ class EpisodeFacts:
             random=random,
             explored=explored,
             is_small=(steps + 1) * simulation.objects <= _MAX_POSES,
+            policy=policy,
         )
 
     def track(self, row: int) -> Floats:

@@ -118,7 +118,7 @@ def run_result(
         files: Files that were written.
         lost: Why the policy or the program of a bridge could not go on, which ended the run.
     """
-    facts = EpisodeFacts.of(simulation, events)
+    facts = EpisodeFacts.of(simulation, events, plan.policy)
     scenario, seed = facts.scenario, simulation.key()[0]
     listed = _without_repeats(scenario, events)
     robots, left, zones = _robots(facts), _exits(facts), zone_results(simulation, events)

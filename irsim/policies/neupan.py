@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import importlib.util
+import io
 import math
+import sys
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +24,13 @@ from irsim.policies.policy import Episode, Needs, Policy
 __all__ = ["NeuPanPolicy"]
 
 _INSTALL = (
-    "git clone https://github.com/hanruihua/NeuPAN && pip install ./NeuPAN; it is on no registry, and its licence is "
-    "GPL-3.0"
+    "git clone https://github.com/hanruihua/NeuPAN && pip install -e ./NeuPAN; it is on no registry, and its licence "
+    "is GPL-3.0"
 )
 _DRIVES = ("diff", "acker", "omni")
 """Drives for which NeuPAN plans."""
+_SECTIONS = ("robot", "ipath", "pan", "adjust", "train")
+"""Sections of its file."""
 _SEEN_M = 0.02
 """Beams that end closer than this to the largest range have hit nothing [m]."""
 _SAME_M = 0.02
@@ -33,11 +40,12 @@ _ON_NEIGHBOR_M = 0.1
 
 
 class NeuPanPolicy(Policy):
-    """NeuPAN (Han et al., T-RO 2025) drives along a straight line to the goal around the points that its lidar sees.
+    """NeuPAN (Han et al., T-RO 2025) drives along the path of its file around the points that its lidar sees.
 
     The package `neupan` must be installed. Its file says what it knows of the robot; the network that it names was
     trained for one footprint, so robots must have that one. Without vertices, length and width there, NeuPAN gets the
-    footprint of each robot. Each robot has a planner of its own, and its first lidar gives the points.
+    footprint of each robot. Each robot has a planner of its own, and its first lidar gives the points. The path is
+    ``ipath: {waypoints: …, loop: …}``, which begins at the robot; without waypoints it is a straight line to the goal.
 
     Args:
         config: The YAML file of NeuPAN, with its sections ``robot``, ``pan`` and so on.
@@ -45,7 +53,7 @@ class NeuPanPolicy(Policy):
         speed: Reference speed [m/s]; None: the ``ref_speed`` of the file.
 
     Raises:
-        PolicyError: The package is not installed, or the file cannot be used.
+        PolicyError: The package is not installed, the file cannot be used, or its network is not there.
         ArgumentError: An option is not of its kind.
     """
 
@@ -63,7 +71,7 @@ class NeuPanPolicy(Policy):
         self._config = _read(config)
         self._folder = Path(config).resolve().parent
         self._speed = speed
-        robot = self._config.get("robot") or {}
+        robot = self._config["robot"]
         drive = robot.get("kinematics")
         if drive not in _DRIVES:
             what = f"{config!r}: the robot has the kinematics {as_given(drive)}"
@@ -72,10 +80,13 @@ class NeuPanPolicy(Policy):
         self.drives = None if drive == "omni" else frozenset({drive})
         self.needs = Needs(scan=True, footprints=True, neighbors=20 if velocities else 0)
         self._shape = _corners(robot)
+        self._network = _find_network(self._config, config)
+        self._path = _waypoints(self._config, config)
         self._footprints: dict[tuple[int, int], Floats] = {}
         self._step: dict[int, float] = {}
         self._planners: dict[tuple[int, int], Any] = {}
         self._goals: dict[tuple[int, int], tuple[float, ...]] = {}
+        self._remarks: dict[int, str] = {}
 
     def reset(self, episode: Episode, rng: np.random.Generator) -> None:
         """Keep the footprints; each robot gets its planner at its first decision.
@@ -84,6 +95,8 @@ class NeuPanPolicy(Policy):
             PolicyError: A robot has another footprint than the network was trained for (``policy-mismatch``).
         """
         self._step[episode.world] = episode.step_time * episode.decision_steps
+        for robot in episode.robots:
+            self._remarks.pop(robot, None)
         for robot, outline in zip(episode.robots, episode.footprints, strict=True):
             if self._shape is not None and not _is_same(self._shape, outline):
                 given, own = (np.round(corners, 2).tolist() for corners in (outline, self._shape))
@@ -106,44 +119,82 @@ class NeuPanPolicy(Policy):
             hit = o.scan.ranges[b] < o.scan.range_max - _SEEN_M
             points = _points(o.pose[b], o.scan.position, o.scan.ranges[b][hit], o.scan.angles[hit])
             moving = None if o.neighbors is None or points is None else _velocities(points, o.neighbors, b)
-            action, _ = planner(state, points, moving)
+            with _quiet():
+                action, info = planner(state, points, moving)
+            self._remark(key[1], info)
             decided[b] = np.asarray(action, dtype=np.float64).reshape(-1)[:2]
         return decided
 
+    def remarks(self) -> Mapping[int, str]:
+        """What the planner of a robot said last, where it has stopped the robot."""
+        return self._remarks
+
+    def _remark(self, robot: int, info: Mapping[str, Any]) -> None:
+        """Keep why the planner stops a robot, as long as it does."""
+        if info.get("arrive"):
+            end = (
+                "its goal" if self._path is None else f"{np.round(self._path[-1][:2], 2).tolist()}, where its path ends"
+            )
+            self._remarks[robot] = f"NeuPAN has arrived at {end}"
+        elif info.get("stop"):
+            near = self._config.get("collision_threshold", 0.1)
+            self._remarks[robot] = f"NeuPAN stops because something is nearer than collision_threshold ({near} m)"
+        else:
+            self._remarks.pop(robot, None)
+
     def _planner(self, key: tuple[int, int], first: bool, threshold: float) -> Any:
-        """The planner of a robot, made at the first decision of its first episode."""
-        if key not in self._planners:
+        """The planner of a robot, made at its first decision; with waypoints it makes its path once, from the start."""
+        if key not in self._planners or (first and self._path is not None):
             self._planners[key] = self._made(key, threshold)
         elif first:
-            self._planners[key].reset()
+            with _quiet():
+                self._planners[key].reset()
         if first:
             self._goals.pop(key, None)
         return self._planners[key]
 
     def _made(self, key: tuple[int, int], threshold: float) -> Any:
-        from neupan import neupan  # type: ignore[import-not-found] # on no registry
-
         config = {name: dict(part) if isinstance(part, dict) else part for name, part in self._config.items()}
-        for name in ("robot", "ipath", "pan", "adjust", "train"):
-            config[f"{name}_kwargs"] = dict(config.pop(name, None) or {})
+        for name in _SECTIONS:
+            config[f"{name}_kwargs"] = config.pop(name)
         if self._shape is None:
             config["robot_kwargs"]["vertices"] = self._footprints[key].tolist()
         config["ipath_kwargs"].setdefault("arrive_threshold", threshold)
-        weights = config["pan_kwargs"].get("dune_checkpoint")
-        if weights is not None and not Path(weights).is_absolute() and (self._folder / weights).is_file():
-            config["pan_kwargs"]["dune_checkpoint"] = str(self._folder / weights)
+        config["pan_kwargs"]["dune_checkpoint"] = str(self._network)
         config["step_time"] = self._step[key[0]]
         if self._speed is not None:
             config["ref_speed"] = float(self._speed)
-        return neupan(**config)
+        try:
+            with _quiet():
+                from neupan import neupan  # type: ignore[import-not-found] # on no registry
+
+                return neupan(**config)
+        except EOFError as error:  # it found an answer to its question
+            what = f"NeuPAN asks a question about the network {str(self._network)!r}, which it cannot read"
+            raise PolicyError("policy-failed", what, "name a network that NeuPAN has trained") from error
 
     def _lead(self, key: tuple[int, int], planner: Any, state: Floats, goal: Floats) -> None:
-        """Give a planner a new straight path if the goal is new."""
+        """Give a planner without waypoints a straight path to each new goal."""
+        if self._path is not None:
+            return
         if self._goals.get(key) == tuple(goal.tolist()[:2]):
             return
         self._goals[key] = tuple(goal.tolist()[:2])
         heading = goal[2] if np.isfinite(goal[2]) else math.atan2(goal[1] - state[1, 0], goal[0] - state[0, 0])
-        planner.update_initial_path_from_goal(state, np.array([[goal[0]], [goal[1]], [heading]]))
+        with _quiet():
+            planner.update_initial_path_from_goal(state, np.array([[goal[0]], [goal[1]], [heading]]))
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep what NeuPAN prints from standard output, which may be a protocol, and its questions from standard input."""
+    stdin = sys.stdin
+    sys.stdin = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):
+            yield
+    finally:
+        sys.stdin = stdin
 
 
 def _read(config: str) -> dict[str, Any]:
@@ -161,7 +212,52 @@ def _read(config: str) -> dict[str, Any]:
         raise PolicyError(
             "policy-failed", f"{config!r} is not a file of NeuPAN", "it has sections such as robot and pan"
         )
-    return data
+    for name in _SECTIONS:
+        if not isinstance(data.get(name) or {}, dict):
+            what = f"{config!r}: the section {name} is not a mapping, got {as_given(data[name])}"
+            raise PolicyError("policy-failed", what, f"write {name}: and its keys below it")
+    return {**data, **{name: data.get(name) or {} for name in _SECTIONS}}
+
+
+def _find_network(config: dict[str, Any], file: str) -> Path:
+    """The file of the network: from the folder of the file of NeuPAN or one above it, from here, or from the package.
+
+    Raises:
+        PolicyError: The file names none, or it is in none of these places.
+    """
+    name = config["pan"].get("dune_checkpoint")
+    fix = "write pan: {dune_checkpoint: model.pth}, with a network that NeuPAN has trained for this robot"
+    if not isinstance(name, str) or name in ("", "None"):
+        raise PolicyError("policy-failed", f"{file!r} names no network (pan: dune_checkpoint)", fix)
+    folder = Path(file).resolve().parent
+    places = [folder, *list(folder.parents)[:4], Path.cwd()]
+    package = importlib.util.find_spec("neupan")
+    if package is not None and package.origin:
+        places.append(Path(package.origin).parents[1])
+    for place in places:
+        if (place / name).is_file():
+            return place / name
+    looked = ", ".join(dict.fromkeys(map(str, places)))
+    raise PolicyError("policy-failed", f"{file!r} names the network {name!r}, which is in none of {looked}", fix)
+
+
+def _waypoints(config: dict[str, Any], file: str) -> list[Floats] | None:
+    """The poses x, y, heading [m, rad] of the path of a file of NeuPAN; None without one.
+
+    Raises:
+        PolicyError: They are not poses.
+    """
+    given = config["ipath"].get("waypoints")
+    if not given:
+        return None
+    try:
+        poses = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        poses = np.empty(0)
+    if poses.ndim != 2 or poses.shape[1] != 3 or not np.isfinite(poses).all():
+        what = f"{file!r}: ipath: waypoints is a list of poses [x, y, heading], got {as_given(given)}"
+        raise PolicyError("policy-failed", what, "write waypoints: [[0, 20, 0], [60, 20, 0]]")
+    return list(poses)
 
 
 def _is_speed(value: Any) -> bool:

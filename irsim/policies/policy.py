@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -149,6 +149,10 @@ class Policy(ABC):
             (B, 2) velocities in the world frame [m/s] for ``output = "velocity"``; else (B, C) controls in the command
             frame of the drive, with at least as many columns as it has controls. Limits are applied by the simulation.
         """
+
+    def remarks(self) -> Mapping[int, str]:
+        """Why it stands still with robots, for the reason of a run that fails: id of a robot -> clause."""
+        return {}
 
 
 _COPIED = ("output", "needs", "drives", "decision_dt", "stochastic")

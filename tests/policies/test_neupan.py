@@ -47,6 +47,9 @@ class StandIn:
     def __init__(self, **config: Any) -> None:
         self.config, self.seen, self.goal, self.resets = config, [], None, 0
         self.made.append(self)
+        print("a planner is made")
+        if config["pan_kwargs"]["dune_checkpoint"].endswith("broken.pth"):
+            input("train it now? ")
 
     def reset(self) -> None:
         self.resets += 1
@@ -58,6 +61,11 @@ class StandIn:
     def __call__(self, state: np.ndarray, points: Any, velocities: Any) -> tuple[np.ndarray, dict[str, Any]]:
         assert state.shape == (3, 1)
         self.seen.append((state[:, 0], points, velocities))
+        print("a decision took 3 ms")
+        if waypoints := self.config["ipath_kwargs"].get("waypoints"):
+            self.goal = np.array(waypoints[-1])
+        if np.hypot(*(self.goal[:2] - state[:2, 0])) < self.config.get("stop_within", 0.1):
+            return np.zeros((2, 1)), {"arrive": self.config.get("stop_within") is None, "stop": True}
         away = self.goal[:2] - state[:2, 0]
         if self.config["robot_kwargs"]["kinematics"] == "omni":
             return away[:, None], {}
@@ -76,12 +84,14 @@ def package(monkeypatch: pytest.MonkeyPatch) -> list[StandIn]:
     return made
 
 
-def config(folder: Path, **robot: Any) -> str:
-    """A file of NeuPAN."""
-    data = {
+def config(folder: Path, rest: dict[str, Any] | None = None, **robot: Any) -> str:
+    """A file of NeuPAN, and the network that it names."""
+    (folder / "model.pth").touch()
+    data: dict[str, Any] = {
         "receding": 10, "ref_speed": 0.8, "robot": {"kinematics": "diff", **robot}, "ipath": {"curve_style": "line"},
         "pan": {"dune_checkpoint": "model.pth"}, "adjust": {"q_s": 0.1},
     }  # fmt: skip
+    data.update(rest or {})
     file = folder / "planner.yaml"
     file.write_text(yaml.safe_dump(data))
     return str(file)
@@ -99,7 +109,6 @@ def scene(folder: Path, **robot: Any) -> Path:
 
 
 def test_each_robot_has_a_planner_with_its_footprint_and_arrives(package: list[StandIn], tmp_path: Path) -> None:
-    (tmp_path / "model.pth").touch()
     policy = planner(tmp_path)
     result = irsim.run(scene(tmp_path, number=2, state=[[1, 5, 0.3], [1, 8, 0]], goal=[[5, 5], [5, 8]]), policy=policy)
     assert result.outcome == "success"
@@ -187,6 +196,67 @@ def test_options_that_cannot_be_used(
         planner(tmp_path, options)
     with pytest.raises(PolicyError, match="has the kinematics 'legged'"):
         planner(tmp_path, kinematics="legged")
+
+
+def test_the_path_of_the_file_is_driven_and_its_end_is_told(package: list[StandIn], tmp_path: Path) -> None:
+    path = {"waypoints": [[1, 5, 0], [2, 6, 0.5], [3, 5.2, 0]], "loop": False}
+    policy = open_policy({"name": "neupan", "config": config(tmp_path, {"ipath": path})})
+    result = irsim.run(scene(tmp_path, state=[1, 5, 0], goal=[9, 9]), policy=policy, steps=80)
+    assert package[0].config["ipath_kwargs"] == {**path, "arrive_threshold": 0.3}
+    assert result.outcome == "timeout"
+    assert str(result.reason).endswith("from its goal: NeuPAN has arrived at [3.0, 5.2], where its path ends")
+    env = irsim.make(scene(tmp_path, goal=[9, 9]), policy=policy, headless=True)
+    env.step()
+    env.reset()
+    env.step()
+    assert len(package) == 3  # the path of each episode begins where the robot is
+    env.end(ending_time=0)
+
+
+def test_a_stop_is_in_the_reason(package: list[StandIn], tmp_path: Path) -> None:
+    file = config(tmp_path, {"stop_within": 3.0, "collision_threshold": 0.2})
+    result = irsim.run(scene(tmp_path), policy=open_policy({"name": "neupan", "config": file}), steps=40)
+    assert "from its goal: NeuPAN stops because something is nearer than collision_threshold (0.2 m)" in str(
+        result.reason
+    )
+
+
+def test_nothing_is_printed_or_asked(
+    package: list[StandIn], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    irsim.run(scene(tmp_path), policy=planner(tmp_path), steps=3)
+    assert capsys.readouterr().out == ""
+    (tmp_path / "broken.pth").touch()
+    file = config(tmp_path, {"pan": {"dune_checkpoint": "broken.pth"}})
+    with pytest.raises(PolicyError, match="asks a question about the network"):
+        irsim.run(scene(tmp_path), policy=open_policy({"name": "neupan", "config": file}), steps=3)
+
+
+@pytest.mark.parametrize(
+    ("rest", "why"),
+    [
+        ({"pan": {"dune_checkpoint": "gone.pth"}}, "names the network 'gone.pth', which is in none of /"),
+        ({"pan": {"dune_checkpoint": "None"}}, "names no network"),
+        ({"pan": None}, "names no network"),
+        ({"robot": [5]}, "section robot is not a mapping"),
+        ({"ipath": {"waypoints": [[1, 2]]}}, "waypoints is a list of poses"),
+        ({"ipath": {"waypoints": [[1, 2, "x"], [3]]}}, "waypoints is a list of poses"),
+    ],
+)
+def test_a_file_without_its_network_is_refused_before_the_run(
+    rest: dict[str, Any], why: str, package: list[StandIn], tmp_path: Path
+) -> None:
+    with pytest.raises(PolicyError, match=why):
+        open_policy({"name": "neupan", "config": config(tmp_path, rest)})
+
+
+def test_a_network_is_found_above_the_file(package: list[StandIn], tmp_path: Path) -> None:
+    folder = tmp_path / "example" / "corridor" / "diff"
+    folder.mkdir(parents=True)
+    (tmp_path / "example" / "deep.pth").touch()
+    file = config(folder, {"pan": {"dune_checkpoint": "example/deep.pth"}})
+    irsim.run(scene(tmp_path), policy=open_policy({"name": "neupan", "config": file}), steps=1)
+    assert package[0].config["pan_kwargs"]["dune_checkpoint"] == str(tmp_path / "example" / "deep.pth")
 
 
 @pytest.mark.skipif(importlib.util.find_spec("neupan") is not None, reason="NeuPAN is installed")
