@@ -12,6 +12,7 @@ from mcp.server import MCPServer
 from mcp.server.caching import CacheHint
 from mcp.server.lowlevel.helper_types import ReadResourceContents
 from mcp.server.mcpserver import Context
+from mcp.server.mcpserver.exceptions import ResourceNotFoundError, ToolError
 from mcp.types import INVALID_PARAMS, CallToolResult, GetPromptResult, InputRequiredResult, ResourceTemplate
 from pydantic import AnyUrl
 
@@ -22,6 +23,7 @@ from irsim_mcp.answers import failure
 from irsim_mcp.call_log import CallLog
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
+from irsim_mcp.presence import Presence
 from irsim_mcp.prompts import add_prompts
 from irsim_mcp.resources import RUN, add_completions, add_docs, add_resources, add_run_resources, media_type, replay_app
 from irsim_mcp.sandbox import Workspace
@@ -57,9 +59,11 @@ class IrsimServer(MCPServer[Any]):
 
     Attributes:
         calls: Where calls of tools are recorded; None if nowhere.
+        presence: Whether the workspace is there.
     """
 
     calls: CallLog | None = None
+    presence: Presence
 
     async def run_stdio_async(self) -> None:
         """Serve over standard input and output."""
@@ -91,7 +95,14 @@ class IrsimServer(MCPServer[Any]):
         if name not in names:
             fix = suggestion(name, names, f"the tools are {', '.join(names)}")
             raise failure("unknown-tool", f"there is no tool {clean(name)!r}", fix=fix)
-        return await super().call_tool(name, arguments, context)
+        self.presence.check()
+        try:
+            result = await super().call_tool(name, arguments, context)
+        except ToolError:
+            self.presence.check()  # which is why it failed
+            raise
+        self.presence.check()
+        return result
 
     async def list_resource_templates(self) -> list[ResourceTemplate]:
         """The resource templates; the template of runs has no media type, as each artifact has its own."""
@@ -102,8 +113,13 @@ class IrsimServer(MCPServer[Any]):
         self, uri: AnyUrl | str, context: Context[Any, Any] | None = None
     ) -> Iterable[ReadResourceContents] | InputRequiredResult:
         """Read a resource; artifacts of runs have the media type of their name."""
-        contents = await super().read_resource(uri, context)
         kind = media_type(str(uri))
+        if kind is not None:
+            try:
+                self.presence.check()
+            except ToolError as gone:
+                raise ResourceNotFoundError(str(gone)) from None
+        contents = await super().read_resource(uri, context)
         if kind is None or isinstance(contents, InputRequiredResult):
             return contents
         return [replace(content, mime_type=kind) for content in contents]
@@ -158,6 +174,7 @@ def build_server(
         log_level="WARNING",
     )
     server.calls = calls
+    server.presence = Presence(folder.root)
     add_resources(server, services)
     add_docs(server)
     add_run_resources(server, services)

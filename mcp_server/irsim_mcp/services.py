@@ -15,6 +15,7 @@ from irsim.common.text import clean
 from irsim_mcp.answers import WorkerResult, failure
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
+from irsim_mcp.once import Once
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.suites import suite_of
 from irsim_mcp.worker import Progress, Workers
@@ -26,10 +27,6 @@ ScenarioPath = Annotated[str | None, Field(description="Workspace file, or id of
 ScenarioYaml = Annotated[str | None, Field(description="Or its YAML text (at most 256 KiB).")]
 
 RunId = Annotated[str, Field(max_length=100, description="Of run_episode, or a job_id.")]
-
-
-_MAX_CACHED = 100
-"""Number of answers about the scenario language that are cached."""
 
 
 _MAX_TEXTS = 64
@@ -77,13 +74,13 @@ class Services:
     limits: ServerLimits
     workers: Workers
     jobs: Jobs
-    known: dict[str, str] = field(default_factory=dict)
-    """Cached answers of :meth:`reference`; the scenario language does not change while the server runs."""
+    known: Once[WorkerResult] = field(default_factory=Once)
+    """Answers about the scenario language and bundled suites, which do not change while the server runs."""
     texts: RecentTexts = field(default_factory=RecentTexts)
     """Texts of scenarios that calls have given."""
 
     async def reference(self, task: str, argument: str, **arguments: Any) -> str:
-        """Have a worker answer a question about the scenario language, unless the answer is cached.
+        """Have a worker answer a question about the scenario language, unless the answer is known.
 
         Args:
             task: Name of the task.
@@ -93,13 +90,7 @@ class Services:
         Raises:
             ToolError: There is no answer.
         """
-        question = json.dumps([task, arguments], sort_keys=True)
-        if question not in self.known:
-            text = str((await self._read(task, arguments, argument))["text"])
-            if len(self.known) >= _MAX_CACHED:
-                del self.known[next(iter(self.known))]
-            self.known[question] = text
-        return self.known[question]
+        return str((await self._read(task, arguments, argument))["text"])
 
     async def scenario_job(
         self,
@@ -261,11 +252,16 @@ class Services:
         Raises:
             ToolError: A scenario is not of the suite, or a policy is not valid.
         """
-        return dict(await self._read("suite_plan", arguments, "policies"))
+        answer = await self.workers.read("suite_plan", arguments, seconds=self.limits.check_seconds)
+        return dict(_result(answer, "policies"))  # policies may be files, which change
 
     async def _read(self, task: str, arguments: dict[str, Any], argument: str) -> WorkerResult:
-        """Have a worker do short work that is not about one scenario; errors name ``argument``."""
-        return _result(await self.workers.read(task, arguments, seconds=self.limits.check_seconds), argument)
+        """Have a worker do short work that is about no file; errors name ``argument``."""
+
+        async def work() -> WorkerResult:
+            return _result(await self.workers.read(task, arguments, seconds=self.limits.check_seconds), argument)
+
+        return await self.known.get(json.dumps([task, argument, arguments], sort_keys=True), work)
 
     def scenario_source(self, given: str, argument: str = "scenarios") -> str:
         """Check a scenario given as a file of the workspace or, with a line break, as text.

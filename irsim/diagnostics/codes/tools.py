@@ -152,6 +152,10 @@ TOOLS: dict[str, Code] = {
     "worker-failed": Code(
         "worker process died", "The process that did the work ended without a result; the server itself continues."
     ),
+    "workspace-gone": Code(
+        "workspace deleted or replaced",
+        "The folder with which the MCP server was started was deleted, renamed or replaced. It is not made anew.",
+    ),
     "internal-error": Code(
         "unexpected error",
         "There is a mistake in irsim or in user code; IRSIM_TRACEBACK=1 shows where. Please report it if it is in "
