@@ -70,7 +70,8 @@ def import_bag(
     bag: Annotated[Path, typer.Argument(metavar="BAG", help="Folder of rosbag2, or .bag file of ROS 1.")],
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Scenario to write; its map is beside it.")],
     odom: Annotated[
-        str | None, typer.Option(metavar="TOPIC", help="Topic of the odometry.", show_default="the only one")
+        str | None,
+        typer.Option(metavar="TOPIC", help="Topic of the odometry, or /tf.", show_default="the only one, else /tf"),
     ] = None,
     scan: Annotated[
         str | None, typer.Option(metavar="TOPIC", help="Topic of the scans.", show_default="the only one")
@@ -84,13 +85,19 @@ def import_bag(
     step_time: Annotated[float, typer.Option(help="Step time of the scenario, in seconds.")] = 0.1,
     start: Annotated[float, typer.Option("--from", help="Start of the window of time, in seconds.")] = 0.0,
     end: Annotated[float | None, typer.Option("--to", help="End of the window of time, in seconds.")] = None,
+    range_max: Annotated[
+        float | None,
+        typer.Option(
+            help="How far beams count, in metres.", show_default="hits: all; beams without one: 99 % of the hits"
+        ),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")] = False,
     json_output: Json = False,
 ) -> None:
-    """Turn a bag into a scenario: its scans become the map, and the robot drives as its odometry says."""
+    """Turn a bag into a scenario: its scans become the map, and the robot drives as its odometry or /tf says."""
     options = BagOptions(
-        odom, scan, _mount(mount), resolution, radius, step_time, start, math.inf if end is None else end
-    )  # fmt: skip
+        odom, scan, _mount(mount), resolution, radius, step_time, start, math.inf if end is None else end, range_max
+    )
     converted = convert(bag, out, options, overwrite=force)
     if json_output:
         typer.echo(json.dumps(asdict(converted)))

@@ -7,6 +7,7 @@ import math
 import shlex
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from irsim.bridges.ros.backends.bag import BagFolder
 from irsim.bridges.ros.bags.importing import BagOptions, import_bag
 from irsim.bridges.ros.messages import Messages
 from irsim.cli.app import app
+from irsim.diagnostics.errors import ArgumentError
 from irsim.runs import open_run
 from tests.bridges.scenes import recorded
 
@@ -143,6 +145,76 @@ def test_a_robot_that_comes_back_drives_its_whole_way() -> None:
     result = irsim.run("s.yaml")
     assert result.outcome == "success"
     assert result.robots[0].path_length == pytest.approx(2 * math.pi, rel=0.01)
+
+
+def write_transforms(folder: str, corrected: bool) -> None:
+    """A robot that drives along x for 2 s in a room of 6 m x 4 m, which says where it is only in ``/tf``.
+
+    Every second beam has no return, which its driver writes as the greatest range, or as more.
+    """
+    messages = Messages()
+
+    def moved(stamp: int, parent: str, child: str, pose: tuple[float, float, float]) -> Any:
+        return messages("tf2_msgs", "TFMessage")([messages.transform(stamp, parent, child, pose)])
+
+    with BagFolder(Path(folder), messages, "mcap", folder) as bag:
+        tf = bag.topic("/tf", "tf2_msgs/msg/TFMessage")
+        fixed = bag.topic("/tf_static", "tf2_msgs/msg/TFMessage", latched=True)
+        scan = bag.topic("/scan", "sensor_msgs/msg/LaserScan")
+        bag.add(fixed, 0, moved(0, "base_link", "laser", (0.2, 0.0, math.pi / 2)))
+        for step in range(21):
+            stamp, x = 100_000_000 * step, 1.0 + 0.1 * step
+            shift = 0.5 if corrected else 0.0
+            bag.add(tf, stamp, moved(stamp, "odom", "base_link", (x - shift, 2.0, 0.0)))
+            if corrected and step == 0:
+                bag.add(tf, stamp, moved(stamp, "map", "odom", (shift, 0.0, 0.0)))
+            angles = math.pi / 2 + np.linspace(-math.pi, math.pi, 181)
+            cosine, sine = np.cos(angles), np.sin(angles)
+            with np.errstate(divide="ignore"):
+                across = np.where(cosine > 0, (6.0 - x - 0.2) / cosine, -(x + 0.2) / cosine)
+                along = np.where(sine > 0, 2.0 / sine, -2.0 / sine)
+            ranges = np.minimum(across, along)
+            ranges[::2] = 30.0
+            ranges[::4] = 40.0
+            beams = (-math.pi, math.pi, math.tau / 180)
+            message = messages.scan(stamp, "laser", beams, (0.05, 30.0), 0.1, ranges.astype(np.float32))
+            bag.add(scan, stamp, message)
+
+
+@pytest.mark.parametrize("corrected", [False, True])
+def test_poses_come_from_transforms_where_there_is_no_odometry(corrected: bool) -> None:
+    write_transforms("b", corrected)
+    imported = import_bag("b", "s.yaml", BagOptions(step_time=0.1))
+    assert (imported.poses, imported.scans, imported.notes) == (21, 21, [])
+    result = irsim.run("s.yaml", seed=1, record=True)
+    trace = open_run(str(result.run_id)).trace()
+    np.testing.assert_allclose(trace.pose[0, 0, :2], [1.0, 2.0], atol=1e-3)
+    np.testing.assert_allclose(trace.pose[20, 0, :2], [3.0, 2.0], atol=0.02)
+    text = Path("s.yaml").read_text()
+    size = [float(text.split(f"{key}: ")[1].split()[0]) for key in ("width", "height")]
+    np.testing.assert_allclose(size, [8.0, 6.0], atol=0.15)  # the walls and 1 m around them: nothing at 30 m
+
+
+def test_beams_without_a_return_clear_as_far_as_asked() -> None:
+    write_transforms("b", False)
+    free = []
+    for reach in (1.0, 3.0):
+        import_bag("b", "s.yaml", BagOptions(range_max=reach), overwrite=True)
+        free.append(int((np.asarray(Image.open("s.png")) == 254).sum()))
+    assert free[0] < 0.6 * free[1]
+    with pytest.raises(ArgumentError, match="range_max must be a positive number"):
+        import_bag("b", "none.yaml", BagOptions(range_max=-1.0))
+
+
+@pytest.mark.foreign
+def test_a_log_of_others_becomes_a_map_with_its_walls(foreign: Path) -> None:
+    imported = import_bag(foreign / "bags" / "csail.bag", "csail.yaml")
+    assert (imported.poses, imported.scans) == (406, 406)
+    grey = np.asarray(Image.open("csail.png"))
+    height, width = np.array(grey.shape) * 0.05
+    assert 56 <= width <= 62
+    assert 80 <= height <= 90
+    assert (grey == 0).sum() > 5000  # its walls
 
 
 def test_a_bag_of_ros_1() -> None:

@@ -18,8 +18,8 @@ from irsim.common.files import TEMPORARY
 __all__ = ["BagBackend", "BagFolder", "Storage"]
 
 Storage = Literal["sqlite3", "mcap"]
-_NEWEST = 9
-"""Version of rosbag2's metadata: Jazzy writes it, and earlier releases read it, too."""
+_VERSION = 8
+"""Version of rosbag2's metadata: Iron and later write it, and Humble reads it; 9, of Jazzy, Humble cannot parse."""
 
 
 class BagFolder:
@@ -38,7 +38,7 @@ class BagFolder:
 
         plugin = StoragePlugin.SQLITE3 if storage == "sqlite3" else StoragePlugin.MCAP
         self._target, self._inner = target, target / name  # rosbags names the file after its folder
-        self._writer = Writer(self._inner, version=_NEWEST, storage_plugin=plugin)
+        self._writer = Writer(self._inner, version=_VERSION, storage_plugin=plugin)
         self._writer.open()
         self._messages = messages
 

@@ -28,6 +28,10 @@ __all__ = ["BagMap", "BagOptions", "ImportedBag", "import_bag", "map_of_scans"]
 MAX_CELLS = 25_000_000
 _MAX_SAMPLES = 2_000_000
 """Points of beams that are handled at once."""
+_NEAR_SHARE = 0.99
+"""Share of hits that are nearer than where a beam without one is known to be free."""
+_SAME_RANGE = 1e-6
+"""Relative difference from the greatest range within which a beam has hit nothing."""
 _OCCUPIED, _FREE, _UNKNOWN = 100, 0, -1
 
 
@@ -47,11 +51,18 @@ class BagMap:
 
 
 def map_of_scans(
-    poses: Floats, scans: Sequence[Scan], path: Floats, resolution: float, radius: float, margin: float
+    poses: Floats,
+    scans: Sequence[Scan],
+    path: Floats,
+    resolution: float,
+    radius: float,
+    margin: float,
+    range_max: float | None = None,
 ) -> BagMap:
     """Count the beams of scans.
 
-    A beam that hit nothing clears cells as far as its lidar sees. A cell is solid if at least half as many beams ended
+    A beam that hit nothing clears cells as far as ``range_max``, but never beyond the cells that hits and the path
+    need. A cell is solid if at least half as many beams ended
     in it as went through, since beams also graze the edge of what is solid.
 
     Args:
@@ -60,13 +71,20 @@ def map_of_scans(
         path: (T, 2) where the robot was: it was free there.
         resolution: Side of a cell [m].
         radius: Radius of the robot [m].
-        margin: Border around the path without scans [m].
+        margin: Border around the path and the hits [m].
+        range_max: How far beams count [m]; None: for hits all of it, for beams that hit nothing 99 % of the hits.
 
     Raises:
         BridgeError: The map would have too many cells.
     """
-    ends = [_ends(pose, scan) for pose, scan in zip(poses, scans, strict=True)]
-    corners = np.concatenate([path, *(points for points, _ in ends)])
+    if range_max is None:
+        found = np.concatenate([scan.ranges[_is_hit(scan)] for scan in scans])
+        range_max = float(np.quantile(found, _NEAR_SHARE)) if len(found) else 0.0
+        reach = math.inf
+    else:
+        reach = range_max
+    ends = [_ends(pose, scan, reach, range_max) for pose, scan in zip(poses, scans, strict=True)]
+    corners = np.concatenate([path, *(points[hit] for points, hit in ends)])
     low = np.floor((corners.min(axis=0) - margin) / resolution) * resolution
     counts = np.ceil((corners.max(axis=0) + margin - low) / resolution).astype(np.int64)
     if counts.prod() > MAX_CELLS:
@@ -84,14 +102,27 @@ def map_of_scans(
     return BagMap(levels, resolution, (float(low[0]), float(low[1])))
 
 
-def _ends(pose: Floats, scan: Scan) -> tuple[Floats, NDArray[np.bool_]]:
-    """(K, 2) ends of the usable beams, and (K,) whether they hit something."""
+def _is_hit(scan: Scan) -> NDArray[np.bool_]:
+    """(N,) whether beams hit something: drivers write the greatest range, or more, where nothing came back."""
+    hit: NDArray[np.bool_] = (scan.ranges >= scan.low) & (scan.ranges < scan.high * (1 - _SAME_RANGE))
+    return hit
+
+
+def _ends(pose: Floats, scan: Scan, reach: float, cleared: float) -> tuple[Floats, NDArray[np.bool_]]:
+    """(K, 2) ends of the usable beams, and (K,) whether they hit something.
+
+    Args:
+        pose: Pose of the lidar.
+        scan: The scan.
+        reach: How far hits count [m]; a farther one is as nothing.
+        cleared: How far beams that hit nothing are known to be free [m].
+    """
     ranges = scan.ranges.astype(np.float64)
     angles = pose[2] + scan.angle_min + scan.increment * np.arange(len(ranges))
-    hit = (ranges >= scan.low) & (ranges <= scan.high)
-    missed = np.isposinf(ranges) | (np.isfinite(ranges) & (ranges > scan.high))
+    hit = _is_hit(scan) & (ranges <= reach)
+    missed = ~hit & ~np.isnan(ranges) & (ranges >= scan.low)
     used = hit | missed
-    lengths = np.where(hit, ranges, scan.high)[used]
+    lengths = np.where(hit, ranges, min(cleared, scan.high))[used]
     points = pose[:2] + lengths[:, None] * np.column_stack([np.cos(angles[used]), np.sin(angles[used])])
     return points, hit[used]
 
@@ -149,7 +180,8 @@ class BagOptions:
         resolution: Side of a cell of the map [m].
         radius: Radius of the robot [m].
         step_time: [s].
-        start, end: Window of time [s], from the first odometry.
+        start, end: Window of time [s], from the first pose.
+        range_max: How far beams count [m]; None: see :func:`map_of_scans`.
     """
 
     odom: str | None = None
@@ -160,6 +192,7 @@ class BagOptions:
     step_time: float = 0.1
     start: float = 0.0
     end: float = math.inf
+    range_max: float | None = None
 
 
 @dataclass(frozen=True)
@@ -201,9 +234,9 @@ def import_bag(
         ExtraError: rosbags is missing.
     """
     options, path, out = options or BagOptions(), Path(path), Path(out)
-    for name in ("resolution", "radius", "step_time"):
+    for name in ("resolution", "radius", "step_time", "range_max"):
         value = getattr(options, name)
-        if not (math.isfinite(value) and value > 0):
+        if value is not None and not (math.isfinite(value) and value > 0):
             raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} above 0")
     result = read_bag(path, options.odom, options.scan)
     rows = _rows(result, options)
@@ -220,7 +253,7 @@ def import_bag(
     grid: BagMap | None = None
     if scans:
         at = np.array([composed(_pose_at(result, result.scan_times[index]), mount) for index in chosen])
-        grid = map_of_scans(at, scans, poses[:, :2], options.resolution, options.radius, 1.0)
+        grid = map_of_scans(at, scans, poses[:, :2], options.resolution, options.radius, 1.0, options.range_max)
     elif result.scan_topic is None:
         named = " of this robot, so there is no map; --scan names another robot's"
         notes.append(f"the bag has no scans{named if result.elsewhere else ', so there is no map'}")
@@ -238,7 +271,7 @@ def _rows(recorded: Recorded, options: BagOptions) -> list[int]:
     """Rows in the window, at least one step apart; the last one is among them."""
     inside = np.flatnonzero((recorded.times >= options.start) & (recorded.times <= options.end))
     if len(inside) < 2:
-        what = f"the window of time has {len(inside)} poses; the odometry lasts {recorded.times[-1]:.1f} s"
+        what = f"the window of time has {len(inside)} poses; they last {recorded.times[-1]:.1f} s"
         raise BridgeError("bridge-file", what, "--from 0")
     kept = [int(inside[0])]
     for row in inside.tolist():

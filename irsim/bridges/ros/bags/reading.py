@@ -1,8 +1,7 @@
-"""Odometry and scans of a bag as arrays."""
+"""Poses and scans of a bag as arrays."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.ros.bags.transforms import Pose, Transforms, frame
 from irsim.bridges.ros.incoming import MessageError, Scan, read_odometry, read_scan
 from irsim.bridges.ros.messages import MAX_SEQUENCE
 from irsim.common.arrays import Floats
@@ -22,6 +22,7 @@ __all__ = ["Recorded", "read_bag"]
 
 _ODOMETRY, _SCAN = "nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan"
 _TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
+_MOVING, _FIXED = "/tf", "/tf_static"
 MAX_POSES = 1_000_000
 MAX_SCANS = 200_000
 
@@ -31,12 +32,12 @@ class Recorded:
     """Recorded data of one robot in a bag.
 
     Attributes:
-        times: (T,) [s] since the first odometry, increasing.
-        poses: (T, 3) x, y [m], yaw [rad], frame of the odometry.
+        times: (T,) [s] since the first pose, increasing.
+        poses: (T, 3) x, y [m], yaw [rad], frame of the odometry, or outermost frame of the transforms.
         scan_times: Times of the scans [s].
         scans: The scans, in their order.
         mount: x, y [m], yaw [rad] of the lidar on the robot; None if the bag does not say.
-        odom_topic, scan_topic: Where they come from; no scans without a topic.
+        odom_topic, scan_topic: Where poses and scans come from; no scans without a topic.
         ignored: How many messages were not usable.
         elsewhere: Whether the bag has scans, but of other robots only.
     """
@@ -57,7 +58,7 @@ def read_bag(path: Path, odom: str | None, scan: str | None) -> Recorded:
 
     Args:
         path: The bag.
-        odom: Topic of the odometry; default: the only one.
+        odom: Topic of the odometry, or ``/tf``; default: the only one, and ``/tf`` in a bag without odometry.
         scan: Topic of the scans; default: the only one of the same robot, if there is one.
 
     Raises:
@@ -68,32 +69,36 @@ def read_bag(path: Path, odom: str | None, scan: str | None) -> Recorded:
     if not path.exists():
         raise BridgeError("bridge-file", f"'{clean(path, 200)}' does not exist", "name a .bag file or a rosbag2 folder")
     with _opened(path) as reader:
-        odom_topic = _chosen(reader, _ODOMETRY, odom, "--odom")
-        assert odom_topic is not None
+        odom_topic = _source(reader, odom)
         scan_topic = _scan_of(reader, odom_topic) if scan is None else _chosen(reader, _SCAN, scan, "--scan")
         elsewhere = scan_topic is None and any(one.msgtype == _SCAN for one in reader.connections)
         rows: list[tuple[float, float, float, float]] = []
         scans: list[tuple[float, Scan]] = []
-        mounts: dict[tuple[str, str], tuple[float, float, float]] = {}
-        frames, ignored = ["", ""], 0
-        wanted = [one for one in reader.connections if one.topic in (odom_topic, scan_topic, "/tf_static")]
+        transforms, frames, ignored = Transforms(), ["", ""], 0
+        wanted = [one for one in reader.connections if one.topic in (odom_topic, scan_topic, _FIXED)]
         for connection, stamp, raw in reader.messages(connections=wanted):
             try:
                 message = reader.deserialize(raw, connection.msgtype)
-                if connection.topic == odom_topic:
-                    frames[0] = str(message.child_frame_id)
+                if connection.msgtype in _TRANSFORMS:
+                    transforms.add(message, fixed=connection.topic == _FIXED)
+                elif connection.topic == odom_topic:
+                    frames[0] = frame(message.child_frame_id)
                     rows.append((_time(message, stamp), *read_odometry(message).pose))
                 elif connection.topic == scan_topic:
-                    frames[1] = str(message.header.frame_id)
+                    frames[1] = frame(message.header.frame_id)
                     scans.append((_time(message, stamp), read_scan(message)))
-                elif connection.msgtype in _TRANSFORMS:
-                    _add_mounts(mounts, message)
             except MessageError:
                 ignored += 1
             if len(rows) > MAX_POSES or len(scans) > MAX_SCANS:
                 raise BridgeError("bridge-file", f"the bag has more than {MAX_POSES} poses or {MAX_SCANS} scans",
                                   "cut it: ros2 bag convert")  # fmt: skip
-    result = _recorded(rows, scans, mounts.get((frames[0], frames[1])), odom_topic, scan_topic, ignored)
+    mount: Pose | None = transforms.fixed.get((frames[0], frames[1]))
+    if odom_topic == _MOVING:
+        if scan_topic is None:
+            what = "the bag has transforms and no odometry, and no scans that say which frame is the robot's"
+            raise BridgeError("bridge-file", what, "record the odometry, or the scans, too")
+        rows, mount = transforms.driven(frames[1])
+    result = _recorded(rows, scans, mount, odom_topic, scan_topic, ignored)
     result.elsewhere = elsewhere
     return result
 
@@ -139,6 +144,17 @@ def _opened(path: Path) -> Iterator[Any]:
         raise BridgeError("bridge-file", what, "name a .bag file, or a folder with metadata.yaml") from None
 
 
+def _source(reader: Any, odom: str | None) -> str:
+    """The topic of poses: odometry, or the transforms where they are named or all there is."""
+    kinds = {one.topic: one.msgtype for one in reader.connections}
+    has_odometry = _ODOMETRY in kinds.values()
+    if kinds.get(_MOVING) in _TRANSFORMS and (odom == _MOVING or (odom is None and not has_odometry)):
+        return _MOVING
+    chosen = _chosen(reader, _ODOMETRY, odom, "--odom")
+    assert chosen is not None
+    return chosen
+
+
 def _scan_of(reader: Any, odom: str) -> str | None:
     """The only topic of scans beside the odometry's topic, or else the only one that is not beside another odometry."""
     topics = {kind: sorted({one.topic for one in reader.connections if one.msgtype == kind})
@@ -179,12 +195,3 @@ def _time(message: Any, stamp: int) -> float:
     time = message.header.stamp
     seconds = float(time.sec) + float(time.nanosec) / 1e9
     return seconds if seconds > 0 else stamp / 1e9
-
-
-def _add_mounts(mounts: dict[tuple[str, str], tuple[float, float, float]], message: Any) -> None:
-    for one in message.transforms:
-        place, turn = one.transform.translation, one.transform.rotation
-        yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y**2 + turn.z**2))
-        values = (float(place.x), float(place.y), yaw)
-        if len(mounts) < 10_000 and all(map(math.isfinite, values)):
-            mounts[str(one.header.frame_id), str(one.child_frame_id)] = values
