@@ -106,7 +106,10 @@ def logged(file: str | Path) -> BenchmarkResult:
         RunError: The file cannot be read, or is not a log of a benchmark.
     """
     head, episodes = _read(file)
-    return with_episodes(head, [episodes[number] for number in sorted(episodes)])
+    try:
+        return with_episodes(head, [episodes[number] for number in sorted(episodes)])
+    except (LookupError, ArithmeticError):
+        raise unreadable(f"the first line of {str(file)!r} has been changed") from None
 
 
 def in_order(file: str | Path, episodes: Sequence[EpisodeRow]) -> str:

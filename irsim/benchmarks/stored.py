@@ -21,6 +21,7 @@ from irsim.benchmarks.plan import Plan, map_hashes
 from irsim.benchmarks.timing import was_timed
 from irsim.common.files import TEMPORARY, write_atomically
 from irsim.common.installed import version
+from irsim.common.records import ContentError, read_json
 from irsim.episodes.episode import Progress
 from irsim.results.benchmark import BenchmarkResult, SuiteResult, SuiteScenarioFacts
 from irsim.runs.files import RunError
@@ -34,6 +35,7 @@ __all__ = [
     "default_folder",
     "last_folder",
     "measure_plan",
+    "read_plan",
     "result_of_plan",
     "resume_benchmark",
     "run_plan",
@@ -158,10 +160,7 @@ def resume_benchmark(
     Raises:
         RunError: The folder holds no plan, or one of another version; or a map file has changed since.
     """
-    try:
-        plan = Plan.model_validate_json((folder / PLAN).read_bytes())
-    except (OSError, ValidationError):
-        raise RunError("no-benchmark", f"{folder} holds no benchmark that can be resumed", "start it again") from None
+    plan = read_plan(folder)
     if plan.version != version():
         raise RunError(
             "other-benchmark",
@@ -180,6 +179,18 @@ def resume_benchmark(
     return run_plan(
         plan, folder, resume=True, workers=workers, cluster=cluster, progress=progress, limits=limits, finish=finish
     )
+
+
+def read_plan(folder: Path) -> Plan:
+    """The plan of a benchmark, with nothing but what its folder holds.
+
+    Raises:
+        RunError: The folder holds no plan.
+    """
+    try:
+        return Plan.model_validate(read_json(folder / PLAN), strict=False)
+    except (ContentError, ValidationError):
+        raise RunError("no-benchmark", f"{folder} holds no benchmark that can be resumed", "start it again") from None
 
 
 def _make(folder: Path) -> None:

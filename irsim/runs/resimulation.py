@@ -50,6 +50,8 @@ def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
         scenario = with_behavior(document, parse_behavior(behavior), strict=strict)
     else:
         scenario = or_raise(read(document, strict=strict, limits=limits))[0]
+    if tuple(record.name for record in scenario.objects) != run.names:
+        raise unreadable(f"scenario.yaml of run {run.id} has been changed: it has other objects")
     return perturbed(scenario, read_perturbations(options.get("perturb")))
 
 

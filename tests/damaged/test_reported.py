@@ -58,7 +58,7 @@ def test_maps_with_dates_and_tags_are_unreadable(workspace: Path, wrong: str) ->
     key = wrong.partition(":")[0]
     lines = [line for line in MAP.splitlines() if not line.startswith(key)]
     (workspace / "map.yaml").write_text("\n".join([*lines, wrong]) + "\n")
-    assert [code for code, _ in problems(workspace, "map.yaml")] == ["map-unreadable"]
+    assert [code for code, _ in problems(workspace, "{name: ros, path: map.yaml}")] == ["map-unreadable"]
 
 
 def test_a_map_with_a_flipped_byte_is_unreadable(workspace: Path) -> None:

@@ -34,6 +34,8 @@ VERSION = 1
 """Version of the file; a reader refuses later ones."""
 SUFFIX = ".bridge.json"
 _MAX_BYTES = 1 << 20
+_LARGEST = 1e12
+"""Largest number of a transform."""
 _SMALLEST_SCALE = 1e-9
 """Smallest factor between the units of length of the two frames that is not an error."""
 
@@ -220,7 +222,8 @@ def _matrix(path: Path, value: Any) -> Floats:
         matrix = np.array(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         matrix = np.zeros(0)
-    if matrix.shape != (4, 4) or not np.isfinite(matrix).all() or (matrix[3] != [0, 0, 0, 1]).any():
+    finite = bool((np.abs(matrix) <= _LARGEST).all())  # false for what is not a number, too
+    if matrix.shape != (4, 4) or not finite or (matrix[3] != [0, 0, 0, 1]).any():
         raise _wrong(path, "its key 'T_scene_from_irsim' must be a 4x4 matrix of numbers whose last row is 0, 0, 0, 1")
     squares = matrix[:3, :3].T @ matrix[:3, :3]
     scale = float(squares[0, 0])

@@ -268,7 +268,9 @@ def _binary_rows(
         if len(chunk) < count * kind.itemsize:
             _refuse(path, f"it ends after {begin + len(chunk) // kind.itemsize:,} of {vertex.count:,} splats")
         read = chunk.view(kind)
-        yield np.stack([read[name].astype(np.float64) for name in fields], axis=1)
+        with np.errstate(invalid="ignore"):  # what is not a number is found later
+            rows = np.stack([read[name].astype(np.float64) for name in fields], axis=1)
+        yield rows
 
 
 def _text_rows(

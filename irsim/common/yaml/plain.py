@@ -11,7 +11,7 @@ from irsim.common.yaml.limits import YamlLimits
 
 __all__ = ["SMALL", "read_plain_yaml", "read_value"]
 
-SMALL = YamlLimits(bytes=1024 * 1024, events=100_000, expansion=100_000, aliases=10_000, depth=32, problems=1)
+SMALL = YamlLimits(bytes=1024 * 1024, events=100_000, expansion=100_000, aliases=10_000, depth=32)
 """Limits of files beside scenarios."""
 
 
