@@ -6,6 +6,7 @@ import contextlib
 import importlib.util
 import io
 import math
+import os
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -31,6 +32,8 @@ _DRIVES = ("diff", "acker", "omni")
 """Drives for which NeuPAN plans."""
 _SECTIONS = ("robot", "ipath", "pan", "adjust", "train")
 """Sections of its file."""
+_LARGEST_M = 1e6
+"""Largest coordinate of a footprint [m]."""
 _SEEN_M = 0.02
 """Beams that end closer than this to the largest range have hit nothing [m]."""
 _SAME_M = 0.02
@@ -235,7 +238,7 @@ def _find_network(config: dict[str, Any], file: str) -> Path:
     if package is not None and package.origin:
         places.append(Path(package.origin).parents[1])
     for place in places:
-        if (place / name).is_file():
+        if os.path.isfile(place / name):  # false for names that are too long, too
             return place / name
     looked = ", ".join(dict.fromkeys(map(str, places)))
     raise PolicyError("policy-failed", f"{file!r} names the network {name!r}, which is in none of {looked}", fix)
@@ -265,14 +268,26 @@ def _is_speed(value: Any) -> bool:
 
 
 def _corners(robot: dict[str, Any]) -> Floats | None:
-    """(K, 2) corners of the robot of a file of NeuPAN [m]; None if it names none."""
-    if robot.get("vertices") is not None:
-        return np.asarray(robot["vertices"], dtype=np.float64).reshape(-1, 2)
-    length, width = robot.get("length"), robot.get("width")
-    if length is None or width is None:
-        return None
-    back = (length - float(robot.get("wheelbase") or 0.0)) / 2
-    return np.array([[x, y] for x in (-back, length - back) for y in (-width / 2, width / 2)])
+    """(K, 2) corners of the robot of a file of NeuPAN [m]; None if it names none.
+
+    Raises:
+        PolicyError: They are not numbers.
+    """
+    try:
+        if robot.get("vertices") is not None:
+            corners: Floats = np.asarray(robot["vertices"], dtype=np.float64).reshape(-1, 2)
+        elif robot.get("length") is None or robot.get("width") is None:
+            return None
+        else:
+            length, width, wheelbase = (float(robot.get(key) or 0.0) for key in ("length", "width", "wheelbase"))
+            back = (length - wheelbase) / 2
+            corners = np.array([[x, y] for x in (-back, length - back) for y in (-width / 2, width / 2)])
+    except (TypeError, ValueError, OverflowError):
+        corners = np.zeros((0, 2))
+    if not len(corners) or not (np.abs(corners) <= _LARGEST_M).all():
+        what = "the section robot has vertices, a length, a width or a wheelbase that are no lengths"
+        raise PolicyError("policy-failed", what, "write meters, such as length: 1.6 and width: 2.0")
+    return corners
 
 
 def _is_same(a: Floats, b: Floats) -> bool:

@@ -259,7 +259,7 @@ KINDS: Mapping[str, Kind] = {
     "jpeg": Kind(_picture("jpg"), _read_map),
     "bmp": Kind(_picture("bmp"), _read_map),
     "gif": Kind(_picture("gif"), _read_map),
-    "neupan": Kind(_text("planner.yaml", _NEUPAN), lambda file, draw: NeuPanPolicy(str(file))),
+    "neupan": Kind(_text("planner.yaml", _NEUPAN, **{"model.pth": ""}), lambda file, draw: NeuPanPolicy(str(file))),
     "suite": Kind(_text("suite.yaml", SUITE), lambda file, draw: expand(*load_suite(str(file))), share=4),
     "task": Kind(_made(lambda file: file.write_text(yaml.safe_dump(corridor())), "task.yaml"), _read_task, share=2),
     "settings": Kind(_training("settings.yaml"), lambda file, draw: RunFolder(file.parent).settings()),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import stat
@@ -13,6 +12,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from irsim.common.records import ContentError, read_json
 from irsim_evals.grader.outcome import Cost
 
 __all__ = [
@@ -228,6 +228,6 @@ def _log_of(path: Path) -> bytes:
 
 def _call_of(line: bytes) -> _Call | None:
     try:
-        return _Call.model_validate(json.loads(line))
-    except (ValueError, RecursionError, ValidationError):
+        return _Call.model_validate(read_json(line))
+    except (ContentError, ValidationError):
         return None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.store import all_case_ids, case_of, given_pictures
@@ -83,10 +83,10 @@ def load_proof(path: Path) -> Proof:
     """
     advice = "write one with irsim-evals prove --json > FILE"
     try:
-        return Proof.model_validate(json.loads(path.read_text(encoding="utf-8")))
+        return Proof.model_validate(read_json(path))
     except ValidationError as error:
         raise ArgumentError(f"{path} is not the JSON of a proof: {_first(error)}", advice) from None
-    except (OSError, ValueError, RecursionError) as error:
+    except ContentError as error:
         raise ArgumentError(f"{path} is not the JSON of a proof: {error}", advice) from None
 
 

@@ -27,6 +27,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.common.outline import BodyPart, Circle, Polygon
+from irsim.common.records import ContentError, read_json
 from irsim.components.bridges.json_lines import JsonLines
 from irsim.diagnostics.diagnostic import format_path
 from irsim.scenario.file_kind import explained
@@ -297,8 +298,8 @@ class JsonLinesBridge(Bridge):
 
     def _read(self, line: bytes) -> Feedback:
         try:
-            data = json.loads(line)
-        except (ValueError, RecursionError):
+            data = read_json(line)
+        except ContentError:
             what = f"{self.name} sent a line that is not JSON: {line[:60]!r}"
             raise BridgeError("bridge-failed", what, "send one JSON object per line") from None
         return feedback_of(data)

@@ -269,8 +269,8 @@ def _binary_rows(
             _refuse(path, f"it ends after {begin + len(chunk) // kind.itemsize:,} of {vertex.count:,} splats")
         read = chunk.view(kind)
         with np.errstate(invalid="ignore"):  # what is not a number is found later
-            rows = np.stack([read[name].astype(np.float64) for name in fields], axis=1)
-        yield rows
+            table = np.stack([read[name].astype(np.float64) for name in fields], axis=1)
+        yield table
 
 
 def _text_rows(

@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
-import struct
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
-from irsim.common.png import check_png
+from irsim.common.pictures import opened_picture
+from irsim.common.records import ContentError
 from irsim.components.maps._site import MapProblem, MapSite, Raster
 
 if TYPE_CHECKING:
+    from PIL import Image
+
     from irsim.common.arrays import Floats
 
 __all__ = ["image_raster", "open_picture", "upright"]
 
-_FORMATS = ("PNG", "PPM", "TIFF", "JPEG", "BMP", "GIF", "WEBP", "TGA", "PCX", "ICO", "JPEG2000")
-"""Pictures without programs and without references to other files."""
-_BROKEN = (OSError, ValueError, SyntaxError, EOFError, Image.DecompressionBombError, ArithmeticError, LookupError,
-           TypeError, AttributeError, MemoryError, RuntimeError, struct.error)  # fmt: skip
-"""Exceptions of Pillow on broken files."""
 _WEIGHTS = (0.2989, 0.5870, 0.1140)
 """Weights of red, green and blue in a grey level (ITU-R BT.601, rounded as in MATLAB's rgb2gray)."""
 
@@ -43,21 +38,17 @@ def open_picture(path: Path, name: str, site: MapSite) -> tuple[NDArray[Any], bo
         MapProblem: The file cannot be read, or has too many pixels.
     """
     try:
-        check_png(path)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # Pillow's own limit is lower than ours, and it warns of odd remarks
-            with Image.open(path, formats=_FORMATS) as image:
-                site.check_cells(*image.size)
-                if image.mode in ("P", "PA", "1", "CMYK", "YCbCr", "LAB", "HSV"):
-                    has_alpha = image.mode == "PA" or "transparency" in image.info
-                    converted = image.convert("RGBA" if has_alpha else "L" if image.mode == "1" else "RGB")
-                else:
-                    converted = image
-                return np.asarray(converted), image.format == "PNG"
-    except _BROKEN as error:
+        with opened_picture(path) as image:
+            site.check_cells(*image.size)
+            converted: Image.Image = image
+            if image.mode in ("P", "PA", "1", "CMYK", "YCbCr", "LAB", "HSV"):
+                has_alpha = image.mode == "PA" or "transparency" in image.info
+                converted = image.convert("RGBA" if has_alpha else "L" if image.mode == "1" else "RGB")
+            return np.asarray(converted), image.format == "PNG"
+    except (OSError, ContentError) as error:
         raise MapProblem(
             "map-unreadable",
-            f"'{name}' cannot be read as a picture: {_reason(error)}",
+            f"'{name}' cannot be read as a picture: {getattr(error, 'strerror', None) or error}",
             given=name,
             fix="save it as a grey PNG: black is occupied, white is free",
         ) from None
@@ -108,8 +99,3 @@ def _one_channel(pixels: NDArray[Any]) -> NDArray[Any] | None:
         return pixels[..., 0]
     same = bool((pixels[..., 0] == pixels[..., 1]).all() and (pixels[..., 0] == pixels[..., 2]).all())
     return pixels[..., 0] if same else None
-
-
-def _reason(error: Exception) -> str:
-    text = getattr(error, "strerror", None) or str(error) or type(error).__name__
-    return text.splitlines()[0] if text.splitlines() else type(error).__name__

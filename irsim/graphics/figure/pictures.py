@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
+from irsim.common.pictures import opened_picture
+from irsim.common.records import ContentError
 from irsim.graphics.scene.style import Color
 from irsim.scenario.locate import BUNDLED, image_places
 
@@ -65,12 +66,12 @@ class Pictures:
         problem = "not found"
         for path in image_places(name, self._folder):
             try:
-                with Image.open(path) as image:
+                with opened_picture(path) as image:
                     image.thumbnail((MAX_SIDE_PX, MAX_SIDE_PX))
                     return np.asarray(image.convert("RGBA"))
             except (FileNotFoundError, NotADirectoryError):
                 continue
-            except (OSError, ValueError, Image.DecompressionBombError):
+            except (OSError, ContentError):
                 problem = "cannot be read as an image"
         if self._warn is not None:
             self._warn(f"description image {name!r} {problem}: the shape is drawn instead")

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from irsim.common.installed import version
+from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
 from irsim.options.registry import KINEMATICS
 from irsim.policies.observations import Neighbors, Observations
@@ -62,8 +63,8 @@ def answer(line: bytes, kind: str) -> dict[str, Any]:
         PeerError: It is not a JSON object of that type.
     """
     try:
-        data = json.loads(line, parse_constant=lambda name: math.nan)
-    except (ValueError, RecursionError):
+        data = read_json(line, finite=False)
+    except ContentError:
         raise _misunderstood(f"answered {_shown(line)}, which is not a line of JSON") from None
     if not isinstance(data, dict) or data.get("type") != kind:
         raise _misunderstood(f"answered {_shown(line)} where an object with type {kind!r} is expected")

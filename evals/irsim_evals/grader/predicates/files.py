@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import fnmatch
-import json
 import re
 import shlex
 import subprocess
 import sys
 from typing import TYPE_CHECKING, Any
 
-import yaml
 from pydantic import Field
 
+from irsim.common.records import ContentError, read_json
+from irsim.common.yaml.limits import YamlLimits
+from irsim.common.yaml.plain import read_plain_yaml
 from irsim_evals.grader.matching import Match, matches, show
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register
 from irsim_evals.grader.programs import problems_in, run_program
@@ -83,8 +84,8 @@ class Data(AnswerPredicate):
         if text is None:
             return Observation(False, expected, "there is no such file")
         try:
-            content = json.loads(text)
-        except (ValueError, RecursionError):
+            content = read_json(text)
+        except ContentError:
             return Observation(False, expected, "it is not JSON")
         seen, passed = [], True
         for path, match in self.has.items():
@@ -148,7 +149,10 @@ class Edits(AnswerPredicate):
             where = odd[0] if odd else None
         if self.same is not None and diff.same != self.same:
             wrong.append("they differ" if not diff.same else "nothing differs")
-        data = yaml.safe_load(after)
+        try:
+            data = read_plain_yaml(after, YamlLimits())
+        except ContentError as error:
+            return Observation(False, expected, f"the new file cannot be read: {error.message}")
         for path, match in self.must.items():
             value = value_at(data, path)
             if not matches(match, value, "size"):
