@@ -28,6 +28,8 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import IO, Any, Protocol
 
+from irsim.common.held import for_children
+
 __all__ = [
     "ONE_THREAD",
     "Child",
@@ -61,9 +63,12 @@ class Writer(Protocol):
 
 # in the parent --------------------------------------------------------------------------------------------------------
 def python(module: str) -> list[str]:
-    """Command that calls ``main`` of a module in a new interpreter, which imports from the same places as this one."""
+    """Command that calls ``main`` of a module in a new interpreter.
+
+    It imports from the same places as this one, and holds the same folder (:mod:`irsim.common.held`).
+    """
     isolated = ["-I"] if sys.flags.isolated else []
-    start = f"import sys; sys.path[:] = {sys.path!r}; from {module} import main; main()"
+    start = f"import sys; sys.path[:] = {sys.path!r}; {for_children()[0]}from {module} import main; main()"
     return [sys.executable, *isolated, "-X", "utf8", "-c", start]
 
 
@@ -88,7 +93,7 @@ class Child:
             stdout=subprocess.PIPE,
             bufsize=0,
             start_new_session=start_new_session,
-            **options,
+            **{**options, "pass_fds": (*options.get("pass_fds", ()), *for_children()[1])},
         )
         assert self.process.stdin is not None
         assert self.process.stdout is not None

@@ -7,8 +7,10 @@ import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from shutil import rmtree
 from typing import TypeAlias
 
+from irsim.common.held import apart
 from irsim.common.text import clean
 from irsim.diagnostics.errors import CodedError
 
@@ -20,6 +22,7 @@ __all__ = [
     "check_suffix",
     "create_bytes",
     "make_folder_of",
+    "new_folder",
     "replace_bytes",
     "replacing",
     "write_all",
@@ -189,12 +192,27 @@ def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary file beside ``path``, which replaces it if the block succeeds and is deleted otherwise.
 
     This is for encoders that open files by name; the temporary file has the suffix of the path. The folder is made if
-    it does not exist.
+    it does not exist. In a folder that is held, the encoder's file is elsewhere and is copied.
     """
     make_folder_of(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
     try:
-        yield temporary
+        with apart(temporary) as written:
+            yield written
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def new_folder(target: Path) -> Iterator[Path]:
+    """Yield a temporary folder beside ``target``, which gets that name if the block succeeds, else is deleted."""
+    make_folder_of(target)
+    temporary = target.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
+    try:
+        with apart(temporary) as written:
+            written.mkdir()
+            yield written
+        os.rename(temporary, target)
+    finally:
+        rmtree(temporary, ignore_errors=True)

@@ -13,12 +13,14 @@ import sys
 import time
 import traceback
 from collections.abc import Callable
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irsim.common.child import answers, end_with_input, limit, write_all
+from irsim.common.held import current, hold_for_good, not_held
+from irsim.common.text import clean
 
 if TYPE_CHECKING:
     from irsim.results.picture import SnapshotResult
@@ -40,7 +42,7 @@ def main() -> None:
     job = json.loads(sys.stdin.buffer.readline())
     end_with_input()
     limit(files=_MAX_FILES, **job["resources"])
-    os.chdir(job["workspace"])  # paths of scenarios, and in them, are relative to it
+    job["workspace"] = _enter(**job["workspace"])  # paths of scenarios, and in them, are relative to it
 
     def answer(text: str) -> None:
         write_all(pipe, text.encode() + b"\n")
@@ -51,6 +53,15 @@ def main() -> None:
     except Exception as error:
         answer(json.dumps({"error": _error_data(error)}))
     os._exit(0)  # at once: there is nothing to clean up
+
+
+def _enter(path: str, descriptor: int | None) -> str:
+    """Hold the workspace from now on, or work in it where folders cannot be held, and return its path."""
+    if descriptor is None:
+        os.chdir(path)
+    else:
+        hold_for_good(path, descriptor)
+    return path
 
 
 class _Progress:
@@ -132,7 +143,7 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
             arguments["seed"] = report.dry_run.seed  # the picture and the check are of the same layout
     scenario, told = read_scenario(path, text=text, strict=True, limits=limits)
     if arguments["draw"]:
-        _load_elsewhere("irsim.rendering.snapshot", job)
+        _load_elsewhere("irsim.rendering.snapshot")
     warnings = [Finding.of(item) for item in told]
     arguments |= {"warnings": warnings, "strict": True, "limits": limits, "progress": progress}
     result = snapshot_of(scenario, path, tries=range(MAX_TRIES), **arguments)
@@ -143,11 +154,14 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
     return _picture(result, checked)
 
 
-def _load_elsewhere(module: str, job: dict[str, Any]) -> None:
+def _load_elsewhere(module: str) -> None:
     """Import a module outside the workspace, as Matplotlib obeys a matplotlibrc in the current directory."""
-    os.chdir(os.path.dirname(__file__))
-    import_module(module)
-    os.chdir(job["workspace"])
+    back = os.getcwd()
+    with not_held():
+        os.chdir(os.path.dirname(__file__))
+        import_module(module)
+    if current() is None:
+        os.chdir(back)
 
 
 def _picture(result: SnapshotResult, checked: str = "") -> str:
@@ -172,7 +186,7 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
         moments = moments_of(step_of(run, arguments["steps"] or None), arguments["strip"])
     env = resimulate(run, arguments["steps"] if moments is None else 0, limits=_limits(job), progress=progress)
     if arguments["draw"]:
-        os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
+        _load_elsewhere("irsim.rendering.snapshot")
     shown = {key: arguments[key] for key in ("size", "overlays", "region", "draw")}
     source = run.meta.get("scenario")
     result = snapshot_of_env(env, source, **shown, moments=moments, warnings=[], reproduce="", progress=progress)
@@ -211,7 +225,7 @@ def _artifact(job: dict[str, Any], progress: _Progress) -> str:
     arguments = job["arguments"]
     run = open_run(arguments.pop("run_id"), job["workspace"])
     if arguments["name"] == "replay.json":
-        _load_elsewhere("matplotlib.colors", job)
+        _load_elsewhere("matplotlib.colors")
     return json.dumps({"text": artifact(run, arguments.pop("name"), limits=_limits(job), **arguments)})
 
 
@@ -325,6 +339,9 @@ def _error_data(error: Exception) -> dict[str, Any]:
     if isinstance(error, MemoryError):
         what = "the work needs more memory than a worker may use"
         return {"code": "out-of-memory", "what": what, "fix": "use fewer objects, lidar beams or steps"}
+    if isinstance(error, OSError) and (name := _own_file(error)) is not None:
+        what = f"{clean(name)!r} cannot be read or written: {error.strerror or error}"
+        return {"code": "file-access", "what": what, "fix": "call again: another program seems to change the workspace"}
     traceback.print_exception(error)
     frame = traceback.extract_tb(error.__traceback__)[-1]
     place = f"{os.path.basename(frame.filename)}:{frame.lineno}"
@@ -333,6 +350,14 @@ def _error_data(error: Exception) -> dict[str, Any]:
         "what": f"{type(error).__name__}: {error} at {place}",
         "fix": "none in the scenario: this is a fault of the simulator; please report it with the scenario",
     }
+
+
+def _own_file(error: OSError) -> str | None:
+    """The file of the workspace that an error of the system is about; None for other files."""
+    folder = current()
+    with suppress(OSError, TypeError):
+        return None if folder is None or error.filename is None else folder.below(error.filename)
+    return None
 
 
 if __name__ == "__main__":

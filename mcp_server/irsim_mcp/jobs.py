@@ -12,7 +12,7 @@ import os
 import threading
 import time
 from collections.abc import Mapping
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -38,8 +38,8 @@ from irsim.runs.store import (
 )
 from irsim_mcp.answers import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
-from irsim_mcp.sandbox import Workspace
-from irsim_mcp.worker import HEAD, Progress, Workers, process_options
+from irsim_mcp.sandbox import Workspace, held
+from irsim_mcp.worker import HEAD, Progress, Workers, process_options, workspace_data
 
 __all__ = ["Jobs"]
 
@@ -75,6 +75,11 @@ class Jobs:
         self._workspace, self._limits = workspace, limits
         self._workers = Workers(workspace, limits)
 
+    def hold(self) -> AbstractContextManager[None]:
+        """Hold the folder of the workspace in the block."""
+        return self._workspace.hold()
+
+    @held
     def start(self, task: str, arguments: Mapping[str, Any], total: int) -> str:
         """Start a job.
 
@@ -99,13 +104,13 @@ class Jobs:
                 fix="wait for one with get_job, or cancel it with get_job cancel=true",
             )
         job = Path(make_run_folder(folder, _STEM))
-        held = claim(job / LOCK)
+        lock = claim(job / LOCK)
         about = {"id": job.name, "created": time.time(), "done": 0, "total": total}
         _note(job, about)
         work = {
             "task": task,
             "arguments": {**arguments, "log": str(job / _LOG)},
-            "workspace": str(self._workspace.root),
+            "workspace": workspace_data(self._workspace),
             "limits": asdict(scenario_limits(self._limits, self._workspace.root)),
             "resources": {
                 "memory": self._limits.memory,
@@ -113,7 +118,7 @@ class Jobs:
                 "cpu": self._limits.job_seconds * (os.cpu_count() or 1) + _EXTRA_CPU_SECONDS,
             },
         }
-        _Keeper(job, held, about, work, self._limits.job_seconds).start()
+        _Keeper(self._workspace, job, lock, about, work, self._limits.job_seconds).start()
         return job.name
 
     async def wait(self, job_id: str, seconds: float, progress: Progress | None = None) -> dict[str, Any]:
@@ -132,10 +137,9 @@ class Jobs:
         Raises:
             ToolError: There is no such job.
         """
-        job = self._find(job_id)
         until = time.monotonic() + seconds
         while True:
-            state = _state(job)
+            job, state = self._find_state(job_id)
             if state["status"] != "running":
                 return await self._state_with_partial_result(job)
             if time.monotonic() >= until:
@@ -144,6 +148,7 @@ class Jobs:
                 await progress(state["done"], state["total"])
             await anyio.sleep(min(_POLL_S, max(0.0, until - time.monotonic())))
 
+    @held
     def cancel(self, job_id: str) -> None:
         """Have a job stopped, whichever server is in charge of it."""
         job = self._find(job_id)
@@ -151,6 +156,7 @@ class Jobs:
             with suppress(OSError):
                 os.close(os.open(job / _CANCEL, os.O_CREAT | os.O_WRONLY, 0o600))
 
+    @held
     def known(self, job_id: str) -> bool:
         """Whether there is a job with an id."""
         try:
@@ -161,8 +167,9 @@ class Jobs:
 
     async def state(self, job_id: str) -> dict[str, Any] | None:
         """State of a job, as :meth:`wait` returns it; None if there is no such job."""
-        return await self._state_with_partial_result(self._find(job_id)) if self.known(job_id) else None
+        return await self._state_with_partial_result(self._find_state(job_id)[0]) if self.known(job_id) else None
 
+    @held
     def forget(self, job_id: str) -> None:
         """Delete a job that has ended and whose result the caller has."""
         job = self._find(job_id)
@@ -171,14 +178,23 @@ class Jobs:
 
     async def _state_with_partial_result(self, job: Path) -> dict[str, Any]:
         """State of a job; the state of a stopped job includes the result of its completed episodes."""
-        state = _state(job)
+        state = self._state(job)
         if state["status"] in ("cancelled", "interrupted") and state["done"] and "result" not in state:
             files = {"log": str(job / _LOG), "to": str(job / PARTIAL)}
             answer = await self._workers.read("logged", files, seconds=self._limits.check_seconds)
             if "error" in answer:
                 raise failure(answer["error"]["code"], answer["error"]["what"], fix="call benchmark again")
-            state = _state(job)
+            state = self._state(job)
         return state
+
+    @held
+    def _state(self, job: Path) -> dict[str, Any]:
+        return _state(job)
+
+    @held
+    def _find_state(self, job_id: str) -> tuple[Path, dict[str, Any]]:
+        job = self._find(job_id)
+        return job, _state(job)
 
     def _folder(self) -> Path:
         try:
@@ -244,10 +260,18 @@ def _note(job: Path, about: Mapping[str, Any]) -> None:
 class _Keeper(threading.Thread):
     """Starts the process of one job and watches it until it ends."""
 
-    def __init__(self, job: Path, held: Claim, about: dict[str, Any], work: dict[str, Any], seconds: float) -> None:
+    def __init__(
+        self, workspace: Workspace, job: Path, lock: Claim, about: dict[str, Any], work: dict[str, Any], seconds: float
+    ) -> None:
         super().__init__(daemon=True, name=job.name)
-        self._job, self._held, self._about, self._work, self._seconds = job, held, about, work, seconds
+        self._workspace, self._job, self._lock = workspace, job, lock
+        self._about, self._work, self._seconds = about, work, seconds
 
+    def hold(self) -> AbstractContextManager[None]:
+        """Hold the folder of the workspace in the block."""
+        return self._workspace.hold()
+
+    @held
     def run(self) -> None:
         """Start the process, write its progress and its result."""
         try:
@@ -264,11 +288,11 @@ class _Keeper(threading.Thread):
                 replace_file(self._job / RESULT, text.encode())
                 (self._job / _LOG).unlink()
         finally:
-            self._held.release()
+            self._lock.release()
 
     def _answer(self) -> dict[str, Any] | None:
         """The answer of the process; None if the job was cancelled."""
-        command, options = process_options()
+        command, options = process_options(self._workspace)
         child = Child(command, **options)
         until = time.monotonic() + self._seconds
         try:

@@ -1,26 +1,34 @@
 """The workspace: the only folder from which scenarios are read; only recorded runs and jobs are written to it.
 
-Files that a call names are written atomically and never through a link, even if others change the folder meanwhile.
+Everything below it is opened from a descriptor of the folder as it was at the start (:mod:`irsim.common.held`), so that
+no link leads out, even if others change the folder meanwhile. Files that a call names are written atomically.
 """
 
 from __future__ import annotations
 
 import difflib
+import errno
+import functools
 import os
 import secrets
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path, PurePosixPath
+from typing import Concatenate, ParamSpec, Protocol, TypeVar
 
 from irsim.common.files import TEMPORARY
+from irsim.common.held import AVAILABLE, Folder, hold
 from irsim.common.text import clean
 from irsim.runs.files import RunError, json_of, text_of
 from irsim.runs.store import ID, META, SCENARIO_FILE, find_run, mark_cancelled, run_folders, runs_folder
 from irsim.scenario.locate import why_outside
 from irsim_mcp.answers import failure
 
-__all__ = ["Workspace", "set_aside", "write_file"]
+__all__ = ["Workspace", "held", "set_aside"]
+
+_Arguments = ParamSpec("_Arguments")
+_Result = TypeVar("_Result")
 
 _SUFFIXES = (".yaml", ".yml")
 _MAX_LISTED_FILES = 2000
@@ -33,6 +41,29 @@ _EXPORTS = "exports"
 """Folder of the workspace for exports of runs."""
 
 
+class _Holder(Protocol):
+    """Something of a workspace."""
+
+    def hold(self) -> AbstractContextManager[None]:
+        """Hold the folder of the workspace in the block."""
+
+
+_Self = TypeVar("_Self", bound=_Holder)
+
+
+def held(
+    method: Callable[Concatenate[_Self, _Arguments], _Result],
+) -> Callable[Concatenate[_Self, _Arguments], _Result]:
+    """A method that works while the folder of the workspace is held."""
+
+    @functools.wraps(method)
+    def holding(self: _Self, /, *arguments: _Arguments.args, **options: _Arguments.kwargs) -> _Result:
+        with self.hold():
+            return method(self, *arguments, **options)
+
+    return holding
+
+
 class Workspace:
     """The folder of the workspace, with checks of the paths and ids that calls name.
 
@@ -42,7 +73,14 @@ class Workspace:
 
     def __init__(self, root: Path) -> None:
         self.root = root.resolve()
+        self.folder = Folder(self.root) if AVAILABLE else None
+        """The folder as it was when the server started, wherever its name leads now."""
 
+    def hold(self) -> AbstractContextManager[None]:
+        """Hold the folder in the block, so that no link below it leads out, whenever it appears."""
+        return hold(self.folder)
+
+    @held
     def scenario(self, name: str, argument: str = "scenario_path") -> str:
         """The path of a scenario file, relative to the workspace.
 
@@ -69,6 +107,7 @@ class Workspace:
         what = f"there is no file {clean(name)!r} in the workspace {self.root}"
         raise failure("file-not-found", what, where=argument, fix=self._advice(target, argument))
 
+    @held
     def new_file(self, name: str) -> str:
         """The path of a scenario file that may be written, relative to the workspace.
 
@@ -97,6 +136,7 @@ class Workspace:
             raise failure("not-a-file", f"{clean(name)!r} is a folder", where="path", fix="name a file in it")
         return path.as_posix()
 
+    @held
     def folder_for_exports(self) -> str:
         """The folder that exports of runs are written to, relative to the workspace; it is made if need be.
 
@@ -110,6 +150,7 @@ class Workspace:
         folder.mkdir(exist_ok=True)
         return _EXPORTS
 
+    @held
     def check_run(self, run_id: str) -> None:
         """Check that a run is recorded in the workspace.
 
@@ -121,6 +162,7 @@ class Workspace:
         except RunError as error:
             raise failure(error.code, error.message, where="run_id", fix=error.fix) from None
 
+    @held
     def runs(self) -> list[str]:
         """Ids of the recorded runs, the one started last first."""
         try:
@@ -132,6 +174,7 @@ class Workspace:
         """Whether a name is the id of a recorded run of the workspace."""
         return ID.fullmatch(name) is not None and name in self.runs()
 
+    @held
     def scenario_of_run(self, run_id: str) -> tuple[str | None, str | None]:
         """The file that a run simulated, if it is still there, and otherwise its text; None for what is not known."""
         try:
@@ -143,6 +186,40 @@ class Workspace:
         there = isinstance(name, str) and why_outside(name, self.root) is None and (self.root / name).is_file()
         return (str(name), None) if there else (None, text)
 
+    @held
+    def has_file(self, name: str) -> bool:
+        """Whether there is a file with a name."""
+        return why_outside(name, self.root) is None and (self.root / name).is_file()
+
+    @held
+    def write(self, name: str, data: bytes, overwrite: bool) -> bool:
+        """Write a file by renaming a temporary one, so that no reader ever sees half of it.
+
+        Args:
+            name: Checked path of the file, with ``/``; missing folders are created.
+            data: Content of the file.
+            overwrite: Whether an existing file may be replaced.
+
+        Returns:
+            Whether a file was replaced.
+
+        Raises:
+            ToolError: The file exists, a part of the path leads out or is not a folder, or the operating system
+                refuses.
+        """
+        try:
+            return _write(self.root / name, data, overwrite)
+        except FileExistsError:
+            what = f"{clean(name)!r} exists already"
+            raise failure(
+                "file-exists", what, where="path", fix="overwrite=true replaces it; or choose another name"
+            ) from None
+        except OSError as error:
+            what = f"{clean(name)!r} cannot be written: {error.strerror or error}"
+            fix = "use folders that are not links, and check permissions and free space"
+            raise failure("file-access", what, where="path", fix=fix) from None
+
+    @held
     def mark_cancelled(self, run_id: str) -> None:
         """Record that a run was stopped on purpose."""
         with suppress(RunError, OSError):
@@ -173,6 +250,7 @@ class Workspace:
         some = ", ".join(repr(clean(name)) for name in there[:_MAX_NAMED])
         return f"the workspace has {some}" if some else f"write the file first, or {text}"
 
+    @held
     def scenarios(self) -> list[str]:
         """YAML files of the workspace and of its immediate folders."""
         names = []
@@ -186,99 +264,38 @@ class Workspace:
         return sorted(names, key=lambda name: (name.count("/"), name))
 
 
-_BY_DESCRIPTOR = {os.open, os.mkdir, os.link, os.rename, os.unlink, os.stat} <= os.supports_dir_fd
-_FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_NOFOLLOW", 0)
-_TEMPORARY = ".new-"
-
-
-def write_file(root: Path, name: str, data: bytes, overwrite: bool) -> bool:
-    """Write a file by renaming a temporary one, so that no reader ever sees half of it.
-
-    Args:
-        root: The folder outside which nothing is written.
-        name: Checked path of the file relative to it, with ``/``; missing folders are created.
-        data: Content of the file.
-        overwrite: Whether an existing file may be replaced.
-
-    Returns:
-        Whether a file was replaced.
-
-    Raises:
-        ToolError: The file exists, a part of the path is a link or not a folder, or the operating system refuses.
-    """
-    *folders, last = name.split("/")
+def _write(target: Path, data: bytes, overwrite: bool) -> bool:
     try:
-        with _open_folder(root, folders) as (folder, descriptor):
-            return _write_into(folder, descriptor, last, data, overwrite)
+        target.parent.mkdir(parents=True, exist_ok=True)
     except FileExistsError:
-        what = f"{clean(name)!r} exists already"
-        raise failure(
-            "file-exists", what, where="path", fix="overwrite=true replaces it; or choose another name"
-        ) from None
-    except OSError as error:
-        what = f"{clean(name)!r} cannot be written: {error.strerror or error}"
-        fix = "use folders that are not links, and check permissions and free space"
-        raise failure("file-access", what, where="path", fix=fix) from None
-
-
-@contextmanager
-def _open_folder(root: Path, folders: list[str]) -> Iterator[tuple[Path, int | None]]:
-    """The folder to write to, and a descriptor of it on systems that support paths relative to descriptors."""
-    if not _BY_DESCRIPTOR:
-        folder = root.joinpath(*folders)
-        folder.mkdir(parents=True, exist_ok=True)
-        yield folder, None
-        return
-    descriptor = os.open(root, _FOLDER & ~getattr(os, "O_NOFOLLOW", 0))
-    try:
-        for part in folders:
-            with suppress(FileExistsError):
-                os.mkdir(part, dir_fd=descriptor)
-            inner = os.open(part, _FOLDER, dir_fd=descriptor)
-            os.close(descriptor)
-            descriptor = inner
-        yield Path(), descriptor
-    finally:
-        os.close(descriptor)
-
-
-def _write_into(folder: Path, descriptor: int | None, name: str, data: bytes, overwrite: bool) -> bool:
-    temporary, target = str(folder / f"{_TEMPORARY}{secrets.token_hex(6)}"), str(folder / name)
-    file = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644, dir_fd=descriptor)
+        raise NotADirectoryError(errno.ENOTDIR, "a part of its path is not a folder") from None
+    temporary = target.with_name(f"{TEMPORARY}{secrets.token_hex(6)}")
+    file = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
     try:
         with os.fdopen(file, "wb") as stream:
             stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())
         if not overwrite:
-            _rename_to_new(temporary, target, descriptor)
+            _rename_to_new(temporary, target)
             return False
-        there = _exists(target, descriptor)
-        os.replace(temporary, target, src_dir_fd=descriptor, dst_dir_fd=descriptor)  # replaces a link, not its target
+        there = os.path.lexists(target)
+        temporary.replace(target)  # replaces a link, not its target
         return there
     finally:
-        with suppress(FileNotFoundError):
-            os.unlink(temporary, dir_fd=descriptor)
+        temporary.unlink(missing_ok=True)
 
 
-def _rename_to_new(temporary: str, target: str, descriptor: int | None) -> None:
+def _rename_to_new(temporary: Path, target: Path) -> None:
     """Rename a file atomically to a name that does not exist yet."""
     try:
-        os.link(temporary, target, src_dir_fd=descriptor, dst_dir_fd=descriptor)
+        os.link(temporary, target)
     except FileExistsError:
         raise
     except (OSError, NotImplementedError):  # a file system without hard links
-        if _exists(target, descriptor):
+        if os.path.lexists(target):
             raise FileExistsError from None
-        os.replace(temporary, target, src_dir_fd=descriptor, dst_dir_fd=descriptor)
-
-
-def _exists(target: str, descriptor: int | None) -> bool:
-    try:
-        os.stat(target, dir_fd=descriptor, follow_symlinks=False)
-    except FileNotFoundError:
-        return False
-    return True
+        temporary.replace(target)
 
 
 @contextmanager

@@ -203,7 +203,7 @@ class Services:
         Raises:
             ToolError: The server does not know the id any more.
         """
-        if not self.texts.is_id(given) or (self.workspace.root / given).is_file():
+        if not self.texts.is_id(given) or self.workspace.has_file(given):
             return None
         text = self.texts.find(given)
         if text is None:
@@ -217,7 +217,7 @@ class Services:
         Raises:
             ToolError: It is the id of a run.
         """
-        if not self.workspace.is_run(given) or (self.workspace.root / given).exists():
+        if not self.workspace.is_run(given) or self.workspace.has_file(given):
             return
         file, text = self.workspace.scenario_of_run(given)
         known = file is None and text is not None and len(text.encode()) <= self.limits.yaml_bytes

@@ -22,7 +22,7 @@ from irsim_mcp.answers import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
 
-__all__ = ["HEAD", "Progress", "Workers", "missing_limits", "process_options"]
+__all__ = ["HEAD", "Progress", "Workers", "missing_limits", "process_options", "workspace_data"]
 
 Progress = Callable[[int, int], Awaitable[None]]
 """Callback ``(steps_done, steps_total)``."""
@@ -112,14 +112,14 @@ class Workers:
             self._at_work -= 1
 
     async def _work(self, job: dict[str, Any], seconds: float, progress: Progress | None) -> dict[str, Any]:
-        job["workspace"] = str(self._workspace.root)
+        job["workspace"] = workspace_data(self._workspace)
         job["limits"] = asdict(scenario_limits(self._limits, self._workspace.root))
         job["resources"] = {
             "memory": self._limits.memory,
             "written": self._limits.written,
             "cpu": int(seconds + _START_SECONDS) + 2,
         }
-        command, options = process_options()
+        command, options = process_options(self._workspace)
         process = await anyio.open_process(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **options)
         reached: tuple[int, int] | None = None
         run: str | None = None
@@ -176,9 +176,15 @@ def _failure_of(code: int | None, seconds: float, reached: tuple[int, int] | Non
     return failure("worker-failed", f"the process that did the work ended with code {code}{done}", fix=fix + kept)
 
 
-def process_options() -> tuple[list[str], dict[str, Any]]:
+def workspace_data(workspace: Workspace) -> dict[str, Any]:
+    """What a worker is told of the workspace: its path, and the descriptor that it inherits, if there is one."""
+    return {"path": str(workspace.root), "descriptor": workspace.folder and workspace.folder.descriptor}
+
+
+def process_options(workspace: Workspace) -> tuple[list[str], dict[str, Any]]:
     """Command of a worker, and options to start it with few environment variables in a session of its own."""
     return _command(), {
+        "pass_fds": () if workspace.folder is None else (workspace.folder.descriptor,),
         "stderr": None,
         "cwd": Path(__file__).parent,
         "env": {name: os.environ[name] for name in _INHERITED if name in os.environ} | _SET,

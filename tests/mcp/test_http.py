@@ -19,6 +19,7 @@ from mcp.client.streamable_http import streamable_http_client
 
 from irsim_mcp.hosts import Address, HttpRefused, address
 from irsim_mcp.http import application, token_from
+from irsim_mcp.sandbox import Workspace
 from irsim_mcp.server import build_server
 from tests.mcp.conftest import ERAS, LONG, ROOM, Caller, children_of, linux, wait_until_gone
 from tests.warm import warm_mcp
@@ -167,7 +168,7 @@ def test_the_token_may_come_from_the_environment_and_workers_do_not_get_it(empty
     os.environ["IRSIM_MCP_TOKEN"] = TOKEN
     try:
         assert token_from(None) == TOKEN
-        assert TOKEN not in process_options()[1]["env"].values()
+        assert TOKEN not in process_options(Workspace(empty))[1]["env"].values()
     finally:
         del os.environ["IRSIM_MCP_TOKEN"]
     with served(empty, "--http", "0", environment={"IRSIM_MCP_TOKEN": TOKEN}) as (url, _):

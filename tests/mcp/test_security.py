@@ -18,6 +18,7 @@ import pytest
 
 from irsim_mcp import job, worker
 from irsim_mcp.limits import ServerLimits
+from irsim_mcp.sandbox import Workspace
 from irsim_mcp.server import build_server
 from tests.mcp.conftest import ROOM, Caller, data_of
 
@@ -209,7 +210,7 @@ async def test_no_tool_takes_code(empty: Path) -> None:
 def test_workers_get_few_variables_and_a_session(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("ANTHROPIC_API_KEY", "IRSIM_MCP_TOKEN", "PYTHONPATH", "LD_PRELOAD", "PYTHONSTARTUP", "MPLCONFIGDIR"):
         monkeypatch.setenv(name, "secret")
-    command, options = worker.process_options()
+    command, options = worker.process_options(Workspace(Path()))
     assert "secret" not in options["env"].values()
     assert options["env"]["MPLBACKEND"] == "Agg"
     assert options["start_new_session"] is True

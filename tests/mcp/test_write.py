@@ -11,6 +11,7 @@ import anyio
 import pytest
 
 from irsim_mcp import sandbox
+from irsim_mcp.sandbox import Workspace
 from tests.mcp.conftest import ERAS, ROOM, Caller, data_of, text_of
 from tests.mcp.golden.write import listed
 
@@ -158,14 +159,14 @@ async def test_links_that_appear_after_the_check_are_not_followed(workspace: Pat
     (outside / "secret.yaml").write_text("secret", encoding="utf-8")
     (workspace / "rooms").symlink_to(outside)
     with pytest.raises(ToolError, match="file-access"):
-        sandbox.write_file(workspace, "rooms/secret.yaml", b"x", overwrite)
+        Workspace(workspace).write("rooms/secret.yaml", b"x", overwrite)
     (workspace / "a.yaml").symlink_to(outside / "secret.yaml")
     if overwrite:
-        assert sandbox.write_file(workspace, "a.yaml", b"x", True)
+        assert Workspace(workspace).write("a.yaml", b"x", True)
         assert not (workspace / "a.yaml").is_symlink()
     else:
         with pytest.raises(ToolError, match="file-exists"):
-            sandbox.write_file(workspace, "a.yaml", b"x", False)
+            Workspace(workspace).write("a.yaml", b"x", False)
     assert tree(outside) == {"secret.yaml": "secret"}
 
 
@@ -175,7 +176,7 @@ async def test_of_many_at_once_one_wins_and_the_file_is_whole(workspace: Path) -
     async def one(number: int) -> None:
         text = ROOM + "#" * 50_000 + str(number)
         try:
-            await anyio.to_thread.run_sync(sandbox.write_file, workspace, "a.yaml", text.encode(), False)
+            await anyio.to_thread.run_sync(Workspace(workspace).write, "a.yaml", text.encode(), False)
         except Exception:
             told.append(False)
         else:
@@ -199,7 +200,7 @@ async def test_folders_that_may_not_be_written(writer: Caller, workspace: Path) 
 
 
 def test_without_descriptors_it_works_too(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sandbox, "_BY_DESCRIPTOR", False)
-    assert not sandbox.write_file(workspace, "a/b.yaml", b"x", False)
-    assert sandbox.write_file(workspace, "a/b.yaml", b"y", True)
+    monkeypatch.setattr(sandbox, "AVAILABLE", False)
+    assert not Workspace(workspace).write("a/b.yaml", b"x", False)
+    assert Workspace(workspace).write("a/b.yaml", b"y", True)
     assert tree(workspace) == {"a": "-", "a/b.yaml": "y"}

@@ -25,8 +25,12 @@ from irsim.common.extras import ExtraError
 
 __all__ = ["end", "load", "run", "serve"]
 
-Program = tuple[list[str], str, dict[str, str]]
-"""Arguments after the interpreter, the working directory, environment variables."""
+Program = tuple[list[str], str, dict[str, str], list[int]]
+"""Arguments after the interpreter, the working directory, environment variables, numbers of files that it inherits."""
+_ASIDE = 900
+"""Number of the first inherited file until the server's own files are closed."""
+_MAX_FILES = 11
+"""Number of files that a program gets, with standard input, output and error."""
 
 
 def load(name: str) -> None:
@@ -105,7 +109,7 @@ def _kill(pid: int) -> None:
 
 def _start(connection: socket.socket) -> tuple[int, Program | None]:
     """A process for the program that a connection asks for; in that process also the program."""
-    head, files, _, _ = socket.recv_fds(connection, 4, 3)
+    head, files, _, _ = socket.recv_fds(connection, 4, _MAX_FILES)
     with connection.makefile("rb") as stream:
         wanted: Program = marshal.loads(stream.read(int.from_bytes(head, "big")))
     pid = os.fork()
@@ -116,7 +120,7 @@ def _start(connection: socket.socket) -> tuple[int, Program | None]:
         signal.signal(signal.SIGINT, signal.default_int_handler)
         connection.close()
         for number, file in enumerate(files):
-            os.dup2(file, number)
+            os.dup2(file, number if number < 3 else _ASIDE + number - 3)
     for file in files:
         os.close(file)
     return pid, wanted if pid == 0 else None
@@ -124,7 +128,10 @@ def _start(connection: socket.socket) -> tuple[int, Program | None]:
 
 def run(program: Program) -> None:
     """Do in this process what ``python ARGUMENTS…`` does."""
-    arguments, folder, variables = program
+    arguments, folder, variables, files = program
+    for place, number in enumerate(files):
+        os.dup2(_ASIDE + place, number)
+        os.close(_ASIDE + place)
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(variables)

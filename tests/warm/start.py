@@ -16,10 +16,11 @@ import sys
 
 def main(address: str, arguments: list[str]) -> None:
     """Ask for the program and wait for its end."""
+    files = inherited()
     with socket.socket(socket.AF_UNIX) as connection:
         connection.connect(address)
-        wanted = marshal.dumps((arguments, os.getcwd(), dict(os.environ)))
-        socket.send_fds(connection, [len(wanted).to_bytes(4, "big")], [0, 1, 2])
+        wanted = marshal.dumps((arguments, os.getcwd(), dict(os.environ), files))
+        socket.send_fds(connection, [len(wanted).to_bytes(4, "big")], [0, 1, 2, *files])
         connection.sendall(wanted)
         code = int(connection.recv(16) or b"70")  # the server is gone
     if code < 0:
@@ -27,6 +28,16 @@ def main(address: str, arguments: list[str]) -> None:
             signal.signal(-code, signal.SIG_DFL)
         os.kill(os.getpid(), -code)
     os._exit(code)
+
+
+def inherited() -> list[int]:
+    """The open files besides standard input, output and error that the caller has passed on."""
+    files = []
+    for name in os.listdir("/dev/fd"):
+        with contextlib.suppress(OSError):  # the list itself is closed by now
+            if int(name) > 2 and os.get_inheritable(int(name)):
+                files.append(int(name))
+    return files
 
 
 main(sys.argv[1], sys.argv[2:])

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import os
-import shutil
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from irsim.bridges.export.episode import open_episode
 from irsim.bridges.export.registry import Format, chosen_options, find_format
 from irsim.common.extras import require
-from irsim.common.files import TEMPORARY, TargetError, check_new, check_suffix, make_folder_of, replacing
+from irsim.common.files import TargetError, check_new, check_suffix, new_folder, replacing
 from irsim.common.text import clean
 from irsim.episodes.episode import Progress
 from irsim.results.records import ExportResult
@@ -91,7 +89,7 @@ def export_run(
         for one in runs
     ]
     try:
-        with _new_folder(target) if form.folder else replacing(target) as path:
+        with new_folder(target) if form.folder else replacing(target) as path:
             notes = form.write(episodes, path, target.name)
     except OSError as error:
         what = f"'{target}' cannot be written: {error.strerror or error}"
@@ -128,19 +126,6 @@ def check_target(form: Format, target: Path, *, overwrite: bool) -> None:
     elif os.path.lexists(target):
         what = f"'{clean(target, 200)}' exists, and folders are not replaced"
         raise TargetError("file-exists", what, "name another folder with -o, or delete this one")
-
-
-@contextmanager
-def _new_folder(target: Path) -> Iterator[Path]:
-    """Yield a temporary folder beside ``target``, which gets that name if the block succeeds, else is deleted."""
-    make_folder_of(target)
-    temporary = target.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
-    temporary.mkdir()
-    try:
-        yield temporary
-        os.rename(temporary, target)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _size_of(target: Path) -> int:

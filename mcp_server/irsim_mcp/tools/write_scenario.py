@@ -9,7 +9,6 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean
-from irsim_mcp.sandbox import write_file
 from irsim_mcp.services import Services
 from irsim_mcp.tool import StrictTool, strict
 
@@ -50,7 +49,7 @@ def tool(services: Services) -> StrictTool:
             "validate_new", yaml, "yaml", path=where, seconds=services.limits.check_seconds
         )
         data = yaml.encode()
-        replaced = await anyio.to_thread.run_sync(write_file, services.workspace.root, where, data, overwrite)
+        replaced = await anyio.to_thread.run_sync(services.workspace.write, where, data, overwrite)
         summary = f"{'replaced' if replaced else 'wrote'} {clean(where)} ({len(data):,} bytes): {_contents(checked)}"
         advice = f"Look at it with render_snapshot scenario_path={clean(where)}, then run_episode."
         report = Written(path=where, bytes=len(data), replaced=replaced, summary=summary, next=advice)

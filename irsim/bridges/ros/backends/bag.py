@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import shutil
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
@@ -13,7 +12,7 @@ from irsim.bridges.ros.backends.base import Backend, Node
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import LATCHED, STATE, Qos, Topic
 from irsim.common.extras import require
-from irsim.common.files import TEMPORARY
+from irsim.common.files import new_folder
 
 __all__ = ["BagBackend", "BagFolder", "Storage"]
 
@@ -103,10 +102,10 @@ class BagBackend(Backend):
         super().__init__(replace(node, topics=[topic for topic in node.topics if topic.outgoing]))
         if folder.exists():
             raise BridgeError("file-exists", f"'{folder}' exists", "name another folder, or remove it")
-        self._target = folder
         self.peer = f"the bag {folder}"
-        self._temporary = folder.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
-        self._bag: BagFolder | None = BagFolder(self._temporary, node.messages, storage, folder.name)
+        self._place = ExitStack()
+        temporary = self._place.enter_context(new_folder(folder))
+        self._bag: BagFolder | None = BagFolder(temporary, node.messages, storage, folder.name)
         self._added = {topic: self._bag.topic_of(topic.name, topic.kind, topic.qos) for topic in self.topics}
         self.stamp = 0
         """Time of the messages that are published next [ns]."""
@@ -123,18 +122,14 @@ class BagBackend(Backend):
             try:
                 bag.__exit__(KeyboardInterrupt)
             finally:
-                shutil.rmtree(self._temporary, ignore_errors=True)
+                self._place.__exit__(KeyboardInterrupt, KeyboardInterrupt(), None)
 
     def close(self) -> None:
         """Complete the folder."""
         bag, self._bag = self._bag, None
-        if bag is None:
-            return
-        try:
-            bag.__exit__(None, None, None)
-            os.rename(self._temporary, self._target)
-        finally:
-            shutil.rmtree(self._temporary, ignore_errors=True)
+        if bag is not None:
+            with self._place:
+                bag.__exit__(None, None, None)
 
 
 def _stored(qos: Qos) -> Any:

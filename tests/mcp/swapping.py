@@ -1,0 +1,133 @@
+"""A place in a folder that is a link to its double outside, and not, in turn: at every opening of a file, or at random.
+
+``python swapping.py PLACE ASIDE DOUBLE`` swaps as fast as it can until its input ends.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import posix
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+__all__ = ["Double", "Swap", "swapping"]
+
+
+class Swap:
+    """Replaces a place by a link to its double, and back.
+
+    Args:
+        place: A file or folder.
+        aside: Where it is while the link has its place.
+        double: Where the link leads.
+    """
+
+    def __init__(self, place: Path, aside: Path, double: Path) -> None:
+        self.place, self.aside, self.double = str(place), str(aside), str(double)
+        self.count, self.linked = 0, False
+
+    def __call__(self) -> None:
+        """Swap."""
+        self.count += 1
+        if self.linked:
+            posix.unlink(self.place)  # those of os are others while a folder is held
+            with suppress(FileNotFoundError):  # it did not exist
+                posix.rename(self.aside, self.place)
+        else:
+            with suppress(FileNotFoundError):
+                posix.rename(self.place, self.aside)
+            posix.symlink(self.double, self.place)
+        self.linked = not self.linked
+
+
+_EVENTS = ("open", "os.listdir", "os.scandir", "os.mkdir", "os.rename", "os.remove", "os.rmdir", "os.utime", "os.link")
+_active: Swap | None = None
+_busy = threading.Lock()
+
+
+def _hook(event: str, _: Any) -> None:
+    if _active is not None and event in _EVENTS and _busy.acquire(blocking=False):
+        try:
+            with suppress(OSError):  # the program has made or removed something in its place
+                _active()
+        finally:
+            _busy.release()
+
+
+@functools.cache
+def _listen() -> None:
+    sys.addaudithook(_hook)  # it stays until the process ends
+
+
+@contextmanager
+def swapping(swap: Swap, *, first: bool = False) -> Iterator[None]:
+    """Swap before each call of the system that opens, makes or moves a file, in this process.
+
+    Args:
+        swap: What is swapped.
+        first: Begin with the link.
+    """
+    global _active
+    _listen()
+    if first:
+        swap()
+    _active = swap
+    try:
+        yield
+    finally:
+        _active = None
+        if swap.linked:
+            swap()
+
+
+class Double:
+    """A copy of a folder beside it, in which each name of a robot is another: nobody may read or write it.
+
+    Args:
+        folder: The folder.
+        name: A name in its files.
+        other: As long a name, which stands in the copy.
+    """
+
+    def __init__(self, folder: Path, name: str, other: str) -> None:
+        self.folder = folder.with_name(f"{folder.name}-double")
+        self.folder.mkdir()
+        for path in sorted(folder.rglob("*")):
+            copy = self.folder / path.relative_to(folder)
+            if path.is_dir():
+                copy.mkdir()
+            else:
+                copy.write_bytes(path.read_bytes().replace(name.encode(), other.encode()))
+        self.reset()
+
+    def reset(self) -> None:
+        """Date everything, so that what is read or written shows."""
+        for path in (self.folder, *self.folder.rglob("*")):
+            os.utime(path, (1, 2))
+        self._known = self._state()
+
+    def _state(self) -> dict[str, tuple[float, float]]:
+        found = {}
+        for folder, folders, files in os.walk(self.folder, topdown=False):
+            for path in (os.path.join(folder, name) for name in (*folders, *files)):
+                status = os.stat(path)
+                found[path] = (0.0 if os.path.isdir(path) else status.st_atime, status.st_mtime)
+        return found
+
+    def changes(self) -> set[str]:
+        """What was read, written, made or removed."""
+        now = self._state()
+        return {path for path in {*now, *self._known} if now.get(path) != self._known.get(path)}
+
+
+if __name__ == "__main__":
+    race = Swap(*map(Path, sys.argv[1:4]))
+    threading.Thread(target=lambda: (sys.stdin.read(), os._exit(0)), daemon=True).start()
+    while True:
+        with suppress(OSError):
+            race()
