@@ -133,7 +133,7 @@ class MapImportResult(Result):
     origin: tuple[float, float]
     """Lower left corner [m]."""
     free_area: float
-    """Area that is free in the scenario [m²]."""
+    """Area that is known to be free [m²]; unknown cells are not part of it."""
     occupied: int
     """Cells that are occupied in the scenario."""
     unknown: int

@@ -13,7 +13,18 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.occupancy import eroded, occupancy_of
 from irsim.bridges.maps.shapes import occupancy_of_outlines
 from irsim.bridges.maps.sidecar import MapSidecar, scene_transform
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Occupancy, Outlines, Scene, find_kind, unusable
+from irsim.bridges.maps.source import (
+    HALF,
+    ImportLimits,
+    ImportOptions,
+    Kind,
+    Occupancy,
+    Outlines,
+    Scene,
+    find_kind,
+    known_free,
+    unusable,
+)
 from irsim.bridges.maps.writing import Trip, files_of, suggest_trip, write_all_or_none
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
@@ -29,7 +40,6 @@ from irsim.scenario.yaml.document import Document
 __all__ = ["import_map", "list_levels", "read_occupancy"]
 
 _MAX_COMPONENTS = 20
-_HALF = 50.0
 
 
 def import_map(
@@ -72,7 +82,7 @@ def import_map(
     kind, result, source = read_occupancy(file, chosen, bounds)
     unknown = chosen.unknown or kind.unknown
     values, filled = _cells(result, chosen, unknown)
-    trip = suggest_trip(result, filled)
+    trip = suggest_trip(result, values)
     if robot and trip is None:
         raise BridgeError("bridge-file", "the map has no room for a robot", "leave out the robot, or try less --radius")
     sidecar = MapSidecar(
@@ -117,7 +127,7 @@ def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **optio
     kind, result, _ = read_occupancy(file, chosen, limits or ImportLimits())
     unknown = chosen.unknown or kind.unknown
     values, filled = _cells(result, chosen, unknown)
-    return _result(kind, result, values, filled, unknown, suggest_trip(result, filled), [])
+    return _result(kind, result, values, filled, unknown, suggest_trip(result, values), [])
 
 
 def _cells(result: Occupancy, options: ImportOptions, unknown: str) -> tuple[Floats, Floats]:
@@ -209,7 +219,7 @@ def _check_used(kind: Kind, options: ImportOptions) -> None:
 def _result(
     kind: Kind, occupancy: Occupancy, values: Floats, filled: Floats, unknown: str, trip: Trip | None, files: list[str]
 ) -> MapImportResult:
-    free = filled <= _HALF
+    free = known_free(values)
     return MapImportResult(
         kind=kind.name,
         files=files,
@@ -218,7 +228,7 @@ def _result(
         resolution=occupancy.grid.resolution,
         origin=(occupancy.grid.x, occupancy.grid.y),
         free_area=round(float(free.sum()) * occupancy.grid.resolution**2, 4),
-        occupied=int((~free).sum()),
+        occupied=int((filled > HALF).sum()),
         unknown=int((values < 0).sum()),
         unknown_as=unknown,
         level=occupancy.level,

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import Field
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.grid import Grid, Triangles
+from irsim.bridges.maps.grid import Bools, Grid, Triangles
 from irsim.common.arrays import Floats
 from irsim.common.lazy import module_names
 from irsim.common.text import clean
@@ -23,6 +23,7 @@ from irsim.options.units import Degrees, Fraction, Meters
 
 __all__ = [
     "FREE",
+    "HALF",
     "OCCUPIED",
     "UNKNOWN",
     "ImportLimits",
@@ -34,6 +35,7 @@ __all__ = [
     "Scene",
     "find_kind",
     "kinds",
+    "known_free",
     "unusable",
 ]
 
@@ -98,6 +100,8 @@ class ImportLimits:
 
 FREE, OCCUPIED, UNKNOWN = 0.0, 100.0, -1.0
 """Values of cells, as in occupancy grids of ROS; those between free and occupied are probabilities."""
+HALF = 50.0
+"""Occupancy up to which a cell counts as free."""
 _HEAD = 4096
 """Bytes of a file by which its kind is known."""
 _LICENCE = 64 * 1024
@@ -108,6 +112,11 @@ _BEFORE_ROOT = re.compile(
     re.DOTALL,
 )
 """Everything up to the name of the root element of a file of XML."""
+
+
+def known_free(values: Floats) -> Bools:
+    """Which cells are known to be free."""
+    return (values >= 0) & (values <= HALF)
 
 
 @dataclass

@@ -17,7 +17,7 @@ from irsim.bridges.maps.grid import Bools
 from irsim.bridges.maps.occupancy import within
 from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.sidecar import MapSidecar, sidecar_path
-from irsim.bridges.maps.source import Occupancy
+from irsim.bridges.maps.source import Occupancy, known_free
 from irsim.common.arrays import Floats
 from irsim.common.files import TargetError, check_new, create_bytes, make_folder_of, replace_bytes
 from irsim.components.maps._rosmap import RosMeta, pixels_of
@@ -31,8 +31,6 @@ _SHARE = 0.7
 """Share of the diagonal of all free cells that the places with that clearance must reach over."""
 _MAX_REACH = 64
 """Cells over which clearances are measured."""
-_HALF = 50.0
-"""Occupancy up to which a cell counts as free."""
 
 
 @dataclass(frozen=True)
@@ -54,9 +52,9 @@ def suggest_trip(occupancy: Occupancy, values: Floats) -> Trip | None:
 
     Args:
         occupancy: The map.
-        values: (nx, ny) its occupancies, unknown cells filled in.
+        values: (nx, ny) its occupancies, -1 where unknown: the way goes over cells that are known to be free.
     """
-    free = values <= _HALF
+    free = known_free(values)
     side = occupancy.grid.resolution
     if not free.any():
         return None

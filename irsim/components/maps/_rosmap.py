@@ -6,25 +6,30 @@ The meaning of the keys follows http://wiki.ros.org/map_server (modes trinary, s
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, replace
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
-from irsim.common.records import ContentError
+from irsim.common.records import ContentError, read_text
+from irsim.common.text import clean
 from irsim.common.yaml.plain import SMALL, read_plain_yaml
 from irsim.components.maps._picture import open_picture, upright
 from irsim.components.maps._site import OCCUPIED, MapProblem, MapSite, Raster, cells_along
 
-__all__ = ["RosMeta", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
+__all__ = ["RosMeta", "find_picture", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
 
 MODES = ("trinary", "scale", "raw")
 UNKNOWN = -1.0
 _YAML = replace(SMALL, bytes=64 * 1024)
 """Limits of the YAML file of a map."""
+_NUMBER = re.compile(r"[-+]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|\.?(?:inf|nan))\Z", re.IGNORECASE)
+"""A number of YAML 1.2, or as C++ writes it."""
+_SWITCHES = {"true": 1.0, "false": 0.0}
 _SAMPLES = 3
 """Samples per cell and axis, so that thin walls survive a rotation."""
 _EXTENT_TOLERANCE = 1e-9
@@ -46,6 +51,7 @@ class RosMeta:
         negate: Whether white is occupied.
         occupied_thresh, free_thresh: Occupancies (0 to 1) above and below which a pixel is occupied and free.
         mode: ``trinary``, ``scale`` or ``raw``.
+        remarks: What the user should know about how the file was read.
     """
 
     image: str
@@ -55,6 +61,7 @@ class RosMeta:
     occupied_thresh: float = 0.65
     free_thresh: float = 0.196
     mode: str = "trinary"
+    remarks: tuple[str, ...] = ()
 
     def as_yaml(self) -> str:
         """The file's text."""
@@ -73,7 +80,8 @@ def read_meta(path: Path, name: str) -> RosMeta:
         MapProblem: The file describes no map, or has a wrong value; the message names the key.
     """
     try:
-        data = read_plain_yaml(path, _YAML)
+        text = read_text(path, _YAML.bytes).replace("\t", " ")  # readers of ROS take tabs for spaces
+        data = read_plain_yaml(text, _YAML)
     except ContentError as error:
         raise _wrong(name, f"it cannot be read as YAML: {error.message}") from None
     if not isinstance(data, dict):
@@ -87,20 +95,22 @@ def read_meta(path: Path, name: str) -> RosMeta:
     origin = data.get("origin", [0.0, 0.0, 0.0])
     if not isinstance(origin, list) or len(origin) not in (2, 3):
         raise _wrong(name, "'origin' must be [x, y, yaw]")
-    x, y, yaw = (_number(value, name, "origin") for value in [*origin, 0.0][:3])
+    turned = _as_number(origin[2]) if len(origin) == 3 else 0.0
+    remarks = () if turned is None or not math.isnan(turned) else ("the yaw of its origin is no number: 0 is taken",)
+    x, y, yaw = (_number(value, name, "origin") for value in [*origin[:2], *([] if remarks else origin[2:]), 0.0][:3])
     occupied, free = (
         _number(data.get(key, standard), name, key)
         for key, standard in (("occupied_thresh", 0.65), ("free_thresh", 0.196))
     )
     if not 0 <= free <= occupied <= 1:
         raise _wrong(name, f"0 <= free_thresh <= occupied_thresh <= 1 must hold, got {free:g} and {occupied:g}")
-    mode = data.get("mode", "trinary")
+    mode = str(data.get("mode", "trinary" if _number(data.get("trinary", 1), name, "trinary") else "scale")).lower()
     if mode not in MODES:
-        raise _wrong(name, f"'mode' must be one of {', '.join(MODES)}, got '{mode}'")
+        raise _wrong(name, f"'mode' must be one of {', '.join(MODES)}, got '{clean(mode, 40)}'")
     if not isinstance(data["image"], str):
         raise _wrong(name, "'image' must be the name of a picture")
     negate = bool(_number(data.get("negate", 0), name, "negate"))
-    return RosMeta(data["image"], resolution, (x, y, yaw), negate, occupied, free, mode)
+    return RosMeta(data["image"], resolution, (x, y, yaw), negate, occupied, free, mode, remarks)
 
 
 def occupancy_of(pixels: NDArray[Any], meta: RosMeta) -> Floats:
@@ -176,8 +186,8 @@ def ros_raster(path: Path, name: str, site: MapSite, unknown: float) -> Raster:
         MapProblem: The file or its picture cannot be used.
     """
     meta = read_meta(path, name)
-    picture = site.find(meta.image, beside=path.parent)
-    pixels, _ = open_picture(picture, meta.image, site)
+    site.notes += [("map-read-as", remark) for remark in meta.remarks]
+    pixels, _ = open_picture(find_picture(meta.image, path, site), meta.image, site)
     values = np.ascontiguousarray(upright(occupancy_of(pixels, meta)))
     width, height, origin = _extent(values.shape, meta)
     wanted = (
@@ -194,6 +204,33 @@ def ros_raster(path: Path, name: str, site: MapSite, unknown: float) -> Raster:
         values = _resample(values, meta, size, wanted, unknown)
     values = np.where(values < 0, unknown, values)
     return Raster(values, None, wanted[0], wanted[1], wanted[2])
+
+
+def find_picture(image: str, path: Path, site: MapSite) -> Path:
+    """The picture of a map; one that is named by a path of another computer is taken from beside the YAML file.
+
+    Args:
+        image: Name of the picture as the file gives it.
+        path: The YAML file.
+        site: Where to look, and where the user hears what was taken.
+
+    Raises:
+        MapProblem: There is no such picture.
+    """
+    try:
+        return site.find(image, beside=path.parent)
+    except MapProblem as problem:
+        elsewhere = PureWindowsPath(image)  # which takes both kinds of slashes
+        near = elsewhere.name
+        if not (near and (elsewhere.anchor or "\\" in image)):
+            raise
+        try:
+            found = site.find(near, beside=path.parent)
+        except MapProblem:
+            raise problem from None
+    said = f"the picture '{clean(image)}' cannot be used here: '{clean(near)}' beside the YAML file is taken instead"
+    site.notes.append(("map-read-as", said))
+    return found
 
 
 def _extent(shape: tuple[int, ...], meta: RosMeta) -> tuple[float, float, tuple[float, float]]:
@@ -233,9 +270,29 @@ def _resample(
 
 
 def _number(value: Any, name: str, key: str) -> float:
-    if isinstance(value, (int, float)) and math.isfinite(value):
-        return float(value)
-    raise _wrong(name, f"'{key}' must be a number, got {value!r}")
+    """A number as readers of ROS take it: an exponent needs no point, quotes change nothing, true is 1.
+
+    Raises:
+        MapProblem: It is no number, or not finite.
+    """
+    number = _as_number(value)
+    if number is not None and math.isfinite(number):
+        return number
+    raise _wrong(name, f"'{key}' must be a number, got {clean(repr(value), 60)}")
+
+
+def _as_number(value: Any) -> float | None:
+    """The number that a value stands for; None if it is none."""
+    if isinstance(value, str):
+        return (
+            float(value.replace(".inf", "inf").replace(".nan", "nan"))
+            if _NUMBER.match(value)
+            else _SWITCHES.get(value.lower())
+        )
+    try:
+        return float(value) if isinstance(value, (int, float)) else None
+    except OverflowError:
+        return math.inf
 
 
 def _wrong(name: str, why: str) -> MapProblem:

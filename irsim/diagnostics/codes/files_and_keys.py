@@ -215,6 +215,11 @@ MAPS_AND_LIMITS: dict[str, Code] = {
         "The indoor scans of IR-SIM may not be redistributed; maps of flats made for irsim replace them "
         "under the same names.",
     ),
+    "map-read-as": Code(
+        "how a map was read",
+        "The file of a map leaves something open, or names a picture by a path of another computer. The message says "
+        "what was taken; correct the file if that is wrong.",
+    ),
     # engine
     "not-yet-simulated": Code(
         "valid, but not simulated yet",

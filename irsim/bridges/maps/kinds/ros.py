@@ -7,14 +7,12 @@ from pathlib import Path
 from irsim.bridges.maps.grid import Grid
 from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.ros_server import MapFileError
-from irsim.bridges.maps.source import OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy
-from irsim.components.maps._rosmap import read_meta, ros_raster
+from irsim.bridges.maps.source import OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy, known_free
+from irsim.components.maps._rosmap import find_picture, read_meta, ros_raster
 from irsim.components.maps._site import MapProblem, MapSite
 from irsim.scenario.locate import why_outside
 
 __all__ = ["KIND"]
-_HALF = 50.0
-"""Occupancy up to which a cell counts as free."""
 
 
 def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
@@ -30,7 +28,8 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     site = MapSite(folders=[Path()] if limits.root is None else [], refuse=refuse)
     try:
         raster = ros_raster(path, path.name, site, UNKNOWN)
-        picture = site.find(read_meta(path, path.name).image, beside=path.parent)
+        notes = [sentence for _, sentence in site.notes]
+        picture = find_picture(read_meta(path, path.name).image, path, site)
     except MapProblem as problem:
         fix = "correct the key image of the file" if problem.code == "map-not-found" else problem.fix
         raise MapFileError(problem.code, problem.message, fix) from None
@@ -38,8 +37,8 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     assert raster.origin is not None
     values = raster.values()
     grid = Grid(*raster.origin, raster.width / values.shape[0], *values.shape)
-    result = Occupancy(values, grid, "ros", parts=[picture])
-    free = (values >= 0) & (values <= _HALF)
+    result = Occupancy(values, grid, "ros", notes=notes, parts=[picture])
+    free = known_free(values)
     if not free.any():
         return result
     number, sizes = masked_regions(free)
