@@ -795,6 +795,14 @@ class State:
         """
     def reseed(self, seeds: NDArray[np.uint64], mask: NDArray[np.uint8]) -> None:
         """Set new seeds; the next reset of these worlds, of either kind, draws scene 0 with noise 0."""
+    def save(self) -> bytes:
+        """The whole state, from which :meth:`load` goes on bit for bit; its format is that of this build."""
+    def load(self, bytes: bytes) -> None:
+        """Continue from what :meth:`save` returned for a state of an equal world.
+
+        Raises:
+            ValueError: The bytes are of another world, or damaged; the state is then not usable.
+        """
     def refresh(self) -> None:
         """Re-evaluate geometry, collisions, stops and sensors (not arrival) after poses were written."""
     def done(self, world: int) -> bool:

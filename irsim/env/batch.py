@@ -27,6 +27,7 @@ from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.events import Event, read_events
 from irsim.simulation.random_streams import check_seed, fresh_seed
 from irsim.simulation.simulation import Simulation
+from irsim.simulation.snapshot import load_simulation, save_simulation
 
 __all__ = ["Batch", "batch"]
 
@@ -73,6 +74,7 @@ class Batch:
         self.scenario = scenario = with_policy(scenario, policy)
         self.seeds = [check_seed(seed) for seed in seeds]
         self._simulation = Simulation(scenario, self.seeds, threads=threads, crowded=crowded)
+        self._policy = policy
         self._simulation.make_view = make_view
         attach_python(self._simulation)
         attach_policy(self._simulation, policy)
@@ -143,6 +145,26 @@ class Batch:
             raise ValueError("an action is not finite; only NaN in its first component (no action) has a meaning")
         self._command[:, :acting, :width] = np.where(given[:, :, None], actions, 0.0)
         self._given[:, :acting] = given
+
+    def snapshot(self) -> bytes:
+        """The present state of all worlds, from which :meth:`restore` goes on bit for bit; see ``Env.snapshot``.
+
+        Raises:
+            InputError: Code in Python keeps something that pickle cannot store.
+        """
+        return save_simulation(self._simulation)
+
+    def restore(self, data: bytes) -> None:
+        """Return to the state of a snapshot, which was taken of a batch of the same scenario and size.
+
+        Raises:
+            InputError: It is of another one.
+        """
+        load_simulation(self._simulation, data)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        made = self.scenario, self.seeds, self._simulation.threads, self._policy
+        return _remake, (type(self), made, self.snapshot())
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
         """Advance every world by ``steps`` periods in one call, driven by behaviors.
@@ -217,6 +239,13 @@ def batch(
         raise ValueError(f"{len(seeds)} seeds for {n} worlds")
     driver = None if policy is None else open_policy(policy)
     return Batch(resolved, list(seeds), threads or os.cpu_count() or 1, driver)
+
+
+def _remake(kind: type[Batch], made: tuple[Any, ...], data: bytes) -> Batch:
+    """A batch in the state of a snapshot."""
+    copy = kind(*made, crowded=True)
+    copy.restore(data)
+    return copy
 
 
 class _CallableModule(ModuleType):

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 from irsim.common.lazy import computed
 from irsim.common.log import Logger
-from irsim.env import drawing, lifetime, live, loop, messages, object_list, policies, queries
+from irsim.env import drawing, lifetime, live, loop, messages, object_list, policies, queries, snapshots
 from irsim.env.parameters import PathParam
 from irsim.env.state import EnvState
 from irsim.graphics.scene.style import Palette
@@ -96,6 +96,10 @@ class Env(EnvState):
     end = lifetime.end
     close = lifetime.end
     quit = lifetime.quit_program
+
+    # states to return to, and copies: snapshots.py
+    snapshot = snapshots.snapshot
+    restore = snapshots.restore
 
     # seeds: lifetime.py, queries.py
     set_random_seed = lifetime.set_random_seed
@@ -202,8 +206,11 @@ class Env(EnvState):
 
         return EnvPlot(self, display=self.display, full=self.full, palette=self.palette_param, attach=attach)
 
-    def __reduce_ex__(self, protocol: object) -> NoReturn:
-        raise TypeError("an environment cannot be copied or pickled: make another from the same file and seed")
+    def __reduce_ex__(self, protocol: object) -> tuple[Any, ...]:
+        return snapshots.reduce(self)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Env:
+        return snapshots.copy_env(self, memo)  # type: ignore[no-any-return]
 
     def __str__(self) -> str:
         return f"Environment: {self.scenario.name} (id {self.id})"

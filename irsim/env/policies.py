@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["attach", "drive_again", "driven", "load_behavior", "opened", "remember_written", "set_policy"]
+__all__ = ["as_written", "attach", "drive_again", "driven", "load_behavior", "opened", "remember_written", "set_policy"]
 
 
 def opened(policy: PolicySource | None) -> Policy | None:
@@ -68,7 +68,7 @@ def set_policy(env: EnvState, policy: PolicySource | None) -> None:
     plain = replace(now, objects=[_as_written(record, env._written) for record in now.objects])
     wanted = with_policy(plain, chosen)
     attach_policy(simulation, chosen)
-    env.scenario = with_policy(_plain(env.scenario, env._written), chosen)
+    env.scenario = with_policy(as_written(env.scenario, env._written), chosen)
     remember_written(env, plain, wanted)
     env._policy = chosen
     if wanted.objects != now.objects:
@@ -91,7 +91,8 @@ def drive_again(env: EnvState) -> None:
         set_policy(env, env._policy)
 
 
-def _plain(scenario: ResolvedScenario, written: dict[int, ObjectRecord]) -> ResolvedScenario:
+def as_written(scenario: ResolvedScenario, written: dict[int, ObjectRecord]) -> ResolvedScenario:
+    """The scenario with the behaviors that a policy has replaced."""
     return replace(scenario, objects=[_as_written(record, written) for record in scenario.objects])
 
 

@@ -11,6 +11,7 @@ from irsim.common.arguments import as_given
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.pictures import Camera
+from irsim.learning.snapshots import Snapshots
 from irsim.learning.step import Result
 from irsim.learning.tasks.files import TaskError, TaskSource
 from irsim.learning.workers.divided import AnyWorlds
@@ -26,7 +27,7 @@ RESET_FIX = "call reset(), which starts the next one"
 """The advice to programs that step an environment without an episode."""
 
 
-class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # types of an extra are not read
+class Env(Snapshots, gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # types of an extra are not read
     """A task with one learner.
 
     The info of a step has ``arrived``, ``collided``, ``is_success``, and ``contacts_between_steps``: the number of

@@ -20,6 +20,7 @@ from irsim.learning.gym_env import (
     observation_space,
 )
 from irsim.learning.pictures import Camera
+from irsim.learning.snapshots import Snapshots
 from irsim.learning.tasks.files import TaskSource
 from irsim.learning.worlds import Worlds
 
@@ -32,7 +33,7 @@ __all__ = ["ParallelEnv"]
 Agent = str
 
 
-class ParallelEnv(pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):  # type: ignore[misc] # as in gym_env
+class ParallelEnv(Snapshots, pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):  # type: ignore[misc] # as in gym_env
     """A task with any number of learners; each robot is an agent, by its name.
 
     An agent whose episode is over leaves ``agents`` after the step that says so; its robot stays in the world. When the

@@ -32,6 +32,9 @@ class Camera:
         self._figure: Any = None
         self._window: Any = None
 
+    def __getstate__(self) -> dict[str, Any]:
+        return vars(self) | {"_figure": None, "_window": None, "_human": False}
+
     def picture(self) -> NDArray[np.uint8]:
         """(H, W, 3) the present state."""
         from irsim.graphics.figure.figure import SceneFigure, fitting_size  # Matplotlib, which training does not need

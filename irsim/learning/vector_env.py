@@ -13,6 +13,7 @@ from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.gym_env import RENDER_MODES, action_space, check_render_mode, frames_per_second, observation_space
 from irsim.learning.pictures import Camera
+from irsim.learning.snapshots import Snapshots
 from irsim.learning.step import Result
 from irsim.learning.tasks.files import TaskSource
 from irsim.learning.workers.divided import AnyWorlds, open_worlds
@@ -34,7 +35,7 @@ _RESETS: dict[AutoresetMode, Autoreset | None] = {
 }
 
 
-class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # type: ignore[misc] # as in gym_env
+class VectorEnv(Snapshots, GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # type: ignore[misc] # as in gym_env
     """``num_envs`` learners; a world's learners have neighboring slots, so n worlds with A learners make n * A slots.
 
     With one learner in each world, slot i is bit for bit what :class:`irsim.learning.Env` is with its seed. With more,
@@ -54,7 +55,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         workers: Number of processes that the worlds are divided among, this one included; results do not depend on it.
             Reward functions in Python get the worlds of their process.
         copy: Whether each step returns new arrays of observations, instead of one that the next step overwrites.
-        render_mode: ``rgb_array``: :meth:`render` returns pictures of the first worlds; ``human`` shows the first one.
+        render_mode: ``rgb_array``: :meth:`render` returns a picture of each world; ``human`` shows the first one.
 
     Attributes:
         worlds: The worlds behind it.
@@ -67,7 +68,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
 
     metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10, "autoreset_mode": AutoresetMode.NEXT_STEP}
 
-    _camera: Camera | None = None  # closed even if the arguments are refused
+    _cameras: Sequence[Camera] = ()  # closed even if the arguments are refused
 
     def __init__(
         self,
@@ -179,21 +180,24 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         return dict(self._facts)
 
     def render(self) -> tuple[Any, ...] | None:
-        """A picture of the first world."""
+        """A picture of each world; of worlds of other processes there are none. ``human`` shows the first one."""
         if self.render_mode is None:
             return None
-        self._camera = self._camera or Camera(self.worlds, human=self.render_mode == "human")
-        if self.render_mode == "human":
-            self._camera.show()
+        human = self.render_mode == "human"
+        if not self._cameras:
+            count = 1 if human else self.worlds.simulation.copies
+            self._cameras = [Camera(self.worlds, world, human=human) for world in range(count)]
+        if human:
+            self._cameras[0].show()
             return None
-        return (self._camera.picture(),)
+        return tuple(camera.picture() for camera in self._cameras)
 
     def close_extras(self, **kwargs: Any) -> None:
         """Close the window, and end the worker processes."""
         if hasattr(self, "worlds"):  # not if the arguments were refused
             self.worlds.close()
-        if self._camera is not None:
-            self._camera.close()
+        for camera in self._cameras:
+            camera.close()
 
     def _mask(self, mask: Any) -> Flags | None:
         """(n,) worlds of the slots of a mask."""

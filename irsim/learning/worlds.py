@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
@@ -24,11 +25,16 @@ from irsim.policies.networks.output import Present, are_finite, decide
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.roles import kinds_of
 from irsim.simulation.simulation import Simulation
+from irsim.simulation.snapshot import dump, load, load_simulation, save_simulation
 
 __all__ = ["Autoreset", "Worlds"]
 
 Autoreset = Literal["over", "before"]
 """Worlds that start their next episode in a step: worlds that are over after it, or that were before it."""
+_FLAGS = ("taking_part", "ended", "arrived", "collided", "over", "horizon")
+"""Arrays of the core about the present episodes of learners."""
+_OWN = ("_begun", "_low", "_high", "_bounded", "present", "level", "drawn", "_latency")
+"""Attributes of worlds that change in a step or a reset."""
 _TRIES = 100
 """Number of scenes that are drawn for a world before it is an error that none has room for all objects."""
 
@@ -67,6 +73,7 @@ class Worlds:
         self, task: TaskSource, n: int = 1, *, seed: int | None = None, threads: int = 1, level: int | None = None
     ) -> None:
         self.task, folder = open_task(task)
+        self._made = os.path.abspath(task) if isinstance(task, str) and os.path.isfile(task) else task, n
         scene = open_scene(self.task, folder)
         check_observed(self.task, scene)
         self.scenario: ResolvedScenario = scene.scenario
@@ -214,6 +221,33 @@ class Worlds:
         """(n * A, D) what the learners observe now, written to ``out`` if it is given."""
         return self.eyes.observe(self.rows, out)
 
+    # states to return to ----------------------------------------------------------------------------------------------
+    def snapshot(self) -> bytes:
+        """The present state of all worlds, from which :meth:`restore` goes on bit for bit; see ``Env.snapshot``.
+
+        Raises:
+            InputError: Code in Python keeps something that pickle cannot store.
+        """
+        flags = {name: getattr(self._stepper, name) for name in _FLAGS}
+        own = {name: getattr(self, name) for name in _OWN}
+        return dump((flags, own, save_simulation(self._simulation)), self._simulation)
+
+    def restore(self, data: bytes) -> None:
+        """Return to the state of a snapshot, which was taken of as many worlds of the same task.
+
+        Raises:
+            InputError: It is of other worlds.
+        """
+        flags, own, simulation = load(data, self._simulation)
+        load_simulation(self._simulation, simulation)
+        for name, values in flags.items():
+            getattr(self._stepper, name)[...] = values
+        vars(self).update(own)
+        self.eyes.read_draws()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _remake, (*self._made, self._threads, self.snapshot())
+
     # a step -----------------------------------------------------------------------------------------------------------
     def step(self, actions: Any) -> Result:
         """Advance all worlds by one period.
@@ -336,3 +370,10 @@ class Worlds:
         if held is not None:
             wanted[held] = 0.0
         return np.ascontiguousarray(wanted)
+
+
+def _remake(task: TaskSource, n: int, threads: int, data: bytes) -> Worlds:
+    """Worlds in the state of a snapshot."""
+    made = Worlds(task, n, threads=threads)
+    made.restore(data)
+    return made

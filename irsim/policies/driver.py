@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 __all__ = ["PolicyDriver", "attach_policy", "decision_steps", "driver_of"]
 
 _NEVER = np.iinfo(np.int64).max
+_MEMORY = ("_numbers", "_begun", "_last", "_keys", "_held", "_next", "_first", "_active")
+"""Attributes of a driver that change from step to step."""
 MAX_DRIVES = 16
 """Number of different drives of the robots that a policy of controls drives in one world."""
 
@@ -162,6 +164,18 @@ class PolicyDriver:
             self._follow(simulation, rows)
         else:
             self._control(simulation, rows)
+
+    def memory(self) -> Any:
+        """What was decided for steps to come, and what the policy remembers."""
+        return [getattr(self, name) for name in _MEMORY], self._base, self.policy.memory()
+
+    def recall(self, memory: Any) -> None:
+        """Continue from what :meth:`memory` returned."""
+        values, base, remembered = memory
+        vars(self).update(zip(_MEMORY, values, strict=True))
+        if remembered is not None:
+            self._base = base
+            self.policy.recall(remembered)
 
     def _rows(self, simulation: Simulation) -> NDArray[np.int64]:
         """(W, n) rows of the driven robots."""

@@ -135,6 +135,16 @@ class Policy(ABC):
             rng: The policy's own random stream in this world and episode; the scenario never draws from it.
         """
 
+    def memory(self) -> dict[str, Any] | None:
+        """What snapshots keep of the policy: its attributes if it has a ``reset``, else nothing."""
+        if type(self).reset is Policy.reset:
+            return None
+        return {name: value for name, value in vars(self).items() if name != "_worlds_in_use"}
+
+    def recall(self, memory: dict[str, Any]) -> None:
+        """Continue from what :meth:`memory` returned."""
+        vars(self).update(memory)
+
     @abstractmethod
     def act(self, observations: Observations) -> Floats:
         """Decide for all robots that need a decision now.

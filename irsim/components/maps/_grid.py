@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copyreg
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import irsim._core as core
 from irsim.components.maps._site import Noise, Raster
@@ -134,3 +135,20 @@ def map_grid(
     cell = (width / nx, height / ny)
     cells = core.OccupancyGrid(raster.occupied(), origin, cell)
     return MapGrid((nx, ny), cell, origin, core.GridCells(grid=cells), raster, cells)
+
+
+def _reduce_grid(grid: core.OccupancyGrid) -> tuple[Any, ...]:
+    return core.OccupancyGrid, (grid.occupied, grid.origin, grid.cell)
+
+
+def _reduce_part(part: Any) -> tuple[Any, ...]:
+    return _make_part, (type(part), {name: getattr(part, name) for name in type(part).fields})
+
+
+def _make_part(kind: Any, fields: dict[str, Any]) -> Any:
+    return kind(**fields)
+
+
+copyreg.pickle(core.OccupancyGrid, _reduce_grid)
+for _kind in (core.GridCells, core.PerlinCells):
+    copyreg.pickle(_kind, _reduce_part)

@@ -5,6 +5,7 @@
 #include "phases.hpp"
 #include "sensing/view.hpp"
 #include "world/exchange.hpp"
+#include "world/snapshot.hpp"
 #include "world/spec.hpp"
 
 namespace irsim {
@@ -245,6 +246,19 @@ void bind_state(nb::module_& m) {
             reseed(self.state, seeds.data(), mask.data());
           },
           nb::arg("seeds"), nb::arg("mask"))
+      .def("save",
+           [](S& self) {
+             self.check_idle();
+             const std::vector<char> bytes = save(self.state);
+             return nb::bytes(bytes.data(), bytes.size());
+           })
+      .def(
+          "load",
+          [](S& self, const nb::bytes& bytes) {
+            const Claim claim(self);
+            load(*self.world, self.state, bytes.c_str(), bytes.size());
+          },
+          nb::arg("bytes"))
       .def("refresh",
            [](S& self) {
              const Claim claim(self);

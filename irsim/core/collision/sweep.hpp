@@ -27,6 +27,12 @@ class Sweep {
     }
   }
 
+  /// Call a function with everything that is remembered from step to step.
+  template <class Visit>
+  void visit(Visit&& visit) {
+    visit(entries_, upright_);
+  }
+
  private:
   struct Entry {
     double key;

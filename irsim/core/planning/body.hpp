@@ -25,6 +25,11 @@ class Body {
   double reach() const { return reach_; }
   /// The box around the footprint at the origin.
   const Box& box() const { return box_; }
+  /// Call a function with everything but the scratch memory.
+  template <class Visit>
+  void visit(Visit&& visit) {
+    visit(parts_, vertices_, part_boxes_, box_, reach_);
+  }
 
  private:
   struct Placed {

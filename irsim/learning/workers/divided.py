@@ -6,14 +6,14 @@ import os
 import sys
 import weakref
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arguments import as_given
 from irsim.common.arrays import Floats
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import ArgumentError, InputError
 from irsim.learning.actions import read_actions
 from irsim.learning.step import Result, Step
 from irsim.learning.tasks.files import TaskSource
@@ -104,6 +104,16 @@ class DividedWorlds:
             fix = "put what the task uses into modules that Python can import, or leave out workers"
             raise ArgumentError(what, fix) from errors[0]
         self._read_draws()
+
+    def snapshot(self, *data: bytes) -> NoReturn:
+        """Refuse, as ``restore`` and copies do: the state is in several processes.
+
+        Raises:
+            InputError: Always.
+        """
+        raise InputError("worlds of several processes have no snapshots and no copies", "leave out workers")
+
+    restore = __reduce__ = snapshot
 
     @property
     def varies(self) -> bool:

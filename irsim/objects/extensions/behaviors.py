@@ -100,6 +100,14 @@ class PythonBehaviors:
         """Delete the behavior that was constructed for an object."""
         self._instances.pop((view.world, view.id, "behavior"), None)
 
+    def memory(self) -> Any:
+        """The behaviors that are objects, which may remember something."""
+        return self._instances
+
+    def recall(self, memory: Any) -> None:
+        """Continue from what :meth:`memory` returned."""
+        self._instances = memory
+
     def _construct(self, key: tuple[int, int, str], maker: Any, given: Any, options: dict[str, Any]) -> None:
         made = construct(maker, given, options, "behavior class", self._simulation.report)
         if made is None:

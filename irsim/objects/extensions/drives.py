@@ -120,6 +120,14 @@ class PythonDrives:
             if world in worlds:
                 wide.reset()
 
+    def memory(self) -> Any:
+        """What the drives remember from step to step."""
+        return self._handlers, self._wide
+
+    def recall(self, memory: Any) -> None:
+        """Continue from what :meth:`memory` returned."""
+        self._handlers, self._wide = memory
+
     def _rows(self) -> list[int]:
         count = self._simulation.objects
         return [world * count + index for world in range(self._simulation.copies) for index in self.objects]

@@ -87,6 +87,14 @@ class PythonSensor:
         if data is not None:
             self.data = data
 
+    def memory(self) -> Any:
+        """The last measurement, and what the sensor remembers."""
+        return self.data, self._rng, self._episode, self.instance
+
+    def recall(self, memory: Any) -> None:
+        """Continue from what :meth:`memory` returned."""
+        self.data, self._rng, self._episode, self.instance = memory
+
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "instance" or self.instance is None:
             raise AttributeError(f"sensor {self.__dict__.get('sensor_type')!r} has no attribute {name!r}")

@@ -143,6 +143,10 @@ class LayerPolicy(NetworkPolicy):
         self._rows = max(1, _NUMBERS_AT_ONCE // max(1, plan.numbers))
         self._slots = Slots(plan.memory, self._dtype) if plan.memory else None
 
+    def memory(self) -> dict[str, Any] | None:
+        """What its layers remember of each robot."""
+        return None if self._slots is None else {"_slots": self._slots}
+
     def compute(self, observed: Mapping[str, Value], observations: Observations) -> Array:
         """(B, F) result of the layers."""
         values = {label: Value(value.array.astype(self._dtype), value.mask) for label, value in observed.items()}

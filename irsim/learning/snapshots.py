@@ -1,0 +1,42 @@
+"""Snapshots of the environments of learning libraries."""
+
+from __future__ import annotations
+
+import pickle
+from typing import Any
+
+__all__ = ["Snapshots"]
+
+_KEPT = ("_fresh", "_over", "agents", "_np_random", "_np_random_seed")
+"""Attributes of environments that change in a step or a reset, besides those of their worlds."""
+
+
+class Snapshots:
+    """Methods of an environment that keep its present state and return to it.
+
+    Environments can also be copied with ``copy.deepcopy`` and pickled, without their windows.
+    """
+
+    worlds: Any
+
+    def snapshot(self) -> bytes:
+        """The present state, from which :meth:`restore` goes on bit for bit: planning and checkpoints need it.
+
+        It can be restored as often as you like, here or in another environment of the same task and the same version
+        of irsim. Restore only snapshots that you trust: they are pickles.
+
+        Raises:
+            InputError: Code in Python keeps something that pickle cannot store, or there are several workers.
+        """
+        own = {name: getattr(self, name) for name in _KEPT if name in vars(self)}
+        return pickle.dumps((own, self.worlds.snapshot()), protocol=5)
+
+    def restore(self, data: bytes) -> None:
+        """Return to the state of a snapshot.
+
+        Raises:
+            InputError: It is of another task, or of another number of worlds.
+        """
+        own, worlds = pickle.loads(data)
+        self.worlds.restore(worlds)
+        vars(self).update(own)

@@ -1,0 +1,123 @@
+"""A simulation as bytes, from which an equal simulation goes on bit for bit."""
+
+from __future__ import annotations
+
+import io
+import pickle
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from irsim.diagnostics.errors import InputError
+
+if TYPE_CHECKING:
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["dump", "load", "load_simulation", "save_simulation"]
+
+_PARTS = "parts"
+
+
+def save_simulation(simulation: Simulation) -> bytes:
+    """The present state of all worlds: of the core, and of drives, behaviors, policies and sensors in Python.
+
+    Raises:
+        InputError: Something in Python cannot be saved; another program takes part.
+    """
+    if simulation.movers:
+        raise InputError("a bridge takes part in the run", "take snapshots where no bridge is open")
+    memory = {
+        "ids": simulation.ids.tolist(),
+        "mode": simulation.world.collision_mode,
+        "reseeded": simulation._reseeded,
+        "rng": simulation._rng,
+        _PARTS: [part.memory() for part in _parts(simulation)],
+        "state": simulation.state.save(),
+    }
+    return dump(memory, simulation)
+
+
+def load_simulation(simulation: Simulation, data: bytes) -> None:
+    """Continue from what :func:`save_simulation` returned for an equal simulation.
+
+    Raises:
+        InputError: It was another simulation: other objects, another number of worlds, another scenario.
+    """
+    memory = load(data, simulation)
+    parts = list(_parts(simulation))
+    if memory["ids"] != simulation.ids.tolist() or len(memory[_PARTS]) != len(parts):
+        raise _of_another()
+    try:
+        simulation.state.load(memory["state"])
+    except ValueError as error:
+        raise _of_another() from error
+    simulation.world.collision_mode = memory["mode"]
+    simulation._reseeded, simulation._rng = memory["reseeded"], memory["rng"]
+    for part, remembered in zip(parts, memory[_PARTS], strict=True):
+        part.recall(remembered)
+
+
+def _of_another() -> InputError:
+    return InputError(
+        "the snapshot is of other objects or of another scenario",
+        "restore it in the environment that it was taken of, with the objects that it had then",
+    )
+
+
+def _parts(simulation: Simulation) -> Iterator[Any]:
+    """Parts in Python that remember something from step to step."""
+    for part in (simulation.drives, *simulation.decisions):
+        if part is not None:
+            yield part
+    if simulation.measurements:
+        for world in range(simulation.copies):
+            for view in simulation.views(world):
+                yield from (sensor for sensor in view.sensors if hasattr(type(sensor), "recall"))
+
+
+def dump(value: Any, simulation: Simulation) -> bytes:
+    """Pickle a value; the simulation, its objects and its scenario are named, not copied.
+
+    Raises:
+        InputError: Something in it cannot be pickled.
+    """
+    out = io.BytesIO()
+    try:
+        _Pickler(out, simulation).dump(value)
+    except (AttributeError, TypeError, pickle.PicklingError) as error:
+        what = f"the memory of code in Python cannot be saved: {error}"
+        raise InputError(what, "keep in behaviors, policies and sensors only what pickle can store") from error
+    return out.getvalue()
+
+
+def load(data: bytes, simulation: Simulation) -> Any:
+    """The value that :func:`dump` has pickled, with the objects of this simulation."""
+    return _Unpickler(io.BytesIO(data), simulation).load()
+
+
+class _Pickler(pickle.Pickler):
+    def __init__(self, out: io.BytesIO, simulation: Simulation) -> None:
+        super().__init__(out, protocol=5)
+        self._names: dict[int, Any] = {id(value): name for name, value in _shared(simulation).items()}
+
+    def persistent_id(self, value: Any) -> Any:
+        return self._names.get(id(value))
+
+
+class _Unpickler(pickle.Unpickler):
+    def __init__(self, data: io.BytesIO, simulation: Simulation) -> None:
+        super().__init__(data)
+        self._shared = _shared(simulation)
+
+    def persistent_load(self, name: Any) -> Any:
+        return self._shared[name]
+
+
+def _shared(simulation: Simulation) -> dict[Any, Any]:
+    """What both sides have: name -> value."""
+    scenario = simulation.scenario
+    shared: dict[Any, Any] = {"simulation": simulation, "world": simulation.world, "state": simulation.state}
+    shared |= {"scenario": scenario, "settings": scenario.world}
+    shared |= {("record", index): record for index, record in enumerate(scenario.objects)}
+    for world, views in simulation._views.items():
+        shared |= {("object", world, index): view for index, view in enumerate(views)}
+    return shared
