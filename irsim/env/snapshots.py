@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import pickle
 from typing import TYPE_CHECKING, Any
 
 from irsim.common.log import LEVELS
@@ -12,7 +11,7 @@ from irsim.env.drawing import redraw
 from irsim.env.policies import as_written
 from irsim.env.state import EnvState
 from irsim.simulation.active_env import last_used, use
-from irsim.simulation.snapshot import load_simulation, save_simulation
+from irsim.simulation.snapshot import dump, load, load_simulation, save_simulation
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -37,7 +36,7 @@ def snapshot(env: EnvState) -> bytes:
     """
     values = {name: getattr(env, name) for name in (*_FLAGS, *_OWN, *_SEEN)}
     modes = {name: getattr(env.world_param, name) for name in _MODES}
-    return pickle.dumps((values, modes, save_simulation(env._simulation)), protocol=5)
+    return dump((values, modes, save_simulation(env._simulation)), env._simulation)
 
 
 def restore(env: EnvState, data: bytes) -> None:
@@ -46,7 +45,7 @@ def restore(env: EnvState, data: bytes) -> None:
     Raises:
         InputError: It is of another scenario, or objects were added or deleted in between.
     """
-    values, modes, simulation = pickle.loads(data)
+    values, modes, simulation = load(data, env._simulation)
     load_simulation(env._simulation, simulation)
     for name, value in values.items():
         setattr(env, name, copy.copy(value))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import pickle
 from typing import Any
+
+from irsim.simulation.snapshot import dump, load
 
 __all__ = ["Snapshots"]
 
@@ -29,7 +30,7 @@ class Snapshots:
             InputError: Code in Python keeps something that pickle cannot store, or there are several workers.
         """
         own = {name: getattr(self, name) for name in _KEPT if name in vars(self)}
-        return pickle.dumps((own, self.worlds.snapshot()), protocol=5)
+        return dump((own, self.worlds.snapshot()), self.worlds.simulation)
 
     def restore(self, data: bytes) -> None:
         """Return to the state of a snapshot.
@@ -37,6 +38,6 @@ class Snapshots:
         Raises:
             InputError: It is of another task, or of another number of worlds.
         """
-        own, worlds = pickle.loads(data)
+        own, worlds = load(data, self.worlds.simulation)
         self.worlds.restore(worlds)
         vars(self).update(own)
