@@ -28,6 +28,7 @@ __all__ = [
     "Hertz",
     "Integer",
     "Kilograms",
+    "LongInteger",
     "Meters",
     "MetersPerSecond",
     "MetersPerSecondSquared",
@@ -52,6 +53,8 @@ MAX_TOLD = 1e6
 """Largest bound that descriptions and messages name; larger ones are named when a value is beyond them."""
 MAX_VERTICES = 10_000
 """Most vertices of one shape."""
+MAX_INTEGER = 2**31 - 1
+"""Largest integer of the engine."""
 MAX_WHOLE = 2**53
 """Largest whole number that every program reads exactly."""
 
@@ -61,7 +64,7 @@ def unit(symbol: str, most: float = 1e9) -> object:
     return Field(json_schema_extra={"x-unit": symbol}, strict=True, allow_inf_nan=False, ge=-most, le=most)
 
 
-Number = Annotated[float, unit("1")]
+Number = Annotated[float, unit("1", 1e15)]
 Meters = Annotated[float, unit("m", MAX_METERS)]
 Radians = Annotated[float, unit("rad", 1e7)]
 Degrees = Annotated[float, unit("deg", 1e7)]
@@ -74,7 +77,8 @@ Kilograms = Annotated[float, unit("kg")]
 Pixels = Annotated[float, unit("px", 1e7)]
 Points = Annotated[float, unit("pt", 1e7)]
 Fraction = Annotated[float, Field(strict=True, ge=0, le=1, json_schema_extra={"x-unit": "1"})]
-Integer = Annotated[int, Field(strict=True, ge=-MAX_WHOLE, le=MAX_WHOLE, json_schema_extra={"x-unit": "1"})]
+Integer = Annotated[int, Field(strict=True, ge=-MAX_INTEGER, le=MAX_INTEGER, json_schema_extra={"x-unit": "1"})]
+LongInteger = Annotated[int, Field(strict=True, ge=-MAX_WHOLE, le=MAX_WHOLE, json_schema_extra={"x-unit": "1"})]
 Count = Annotated[Integer, Field(ge=0)]
 Seed = Annotated[int, Field(strict=True, ge=0, lt=2**64, json_schema_extra={"x-unit": "1"})]
 Bool = Annotated[bool, Field(strict=True)]

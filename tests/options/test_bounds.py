@@ -26,7 +26,7 @@ robot: {{kinematics: {{name: diff}}, behavior: {{name: dash}}, {robot}}}
 def numbers(part: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     """Path and schema of each number in a schema."""
     if isinstance(part, dict):
-        if part.get("type") in ("number", "integer") and not {"const", "enum"} & set(part):
+        if {"number", "integer"} & set(_kinds(part)) and not {"const", "enum"} & set(part):
             yield path, part
         for key, value in part.items():
             if key not in ("examples", "default", "enum", "const"):
@@ -34,6 +34,11 @@ def numbers(part: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, 
     elif isinstance(part, list):
         for index, value in enumerate(part):
             yield from numbers(value, (*path, str(index)))
+
+
+def _kinds(part: dict[str, Any]) -> list[str]:
+    kind = part.get("type", [])
+    return [kind] if isinstance(kind, str) else list(kind) if isinstance(kind, list) else []
 
 
 @pytest.mark.parametrize("file", SCHEMAS, ids=lambda file: file.name)

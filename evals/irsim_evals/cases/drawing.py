@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import io
-from typing import Literal
+from typing import Annotated, Literal
 
 from PIL import Image, ImageDraw, ImageFont
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 __all__ = ["Drawing", "Item", "Record", "draw"]
 
 _MARGIN = 40
 """Width of the white margin round the plan, which holds the labels of the axes [px]."""
+Coordinate = Annotated[float, Field(allow_inf_nan=False, ge=-1e4, le=1e4)]
+Extent = Annotated[float, Field(gt=0, le=1e4)]
+_MAX_PIXELS = 5e7
 _GRID = (222, 222, 222)
 
 
@@ -25,27 +28,34 @@ class Item(Record):
     """One thing in a drawing (m; x to the right, y up)."""
 
     kind: Literal["box", "disc", "line", "text", "arrow"]
-    at: list[float]
+    at: Annotated[list[Coordinate], Field(max_length=4)]
     """A box: x0, y0, x1, y1. A disc: x, y, radius. A line or an arrow: x0, y0, x1, y1. A text: its middle."""
     color: str = "black"
     """Name of a color or ``#rrggbb``."""
     text: str = ""
     """Words of a text."""
-    width: int = 3
+    width: Annotated[int, Field(ge=0, le=1000)] = 3
     """Width of a line [px]."""
 
 
 class Drawing(Record):
     """A plan drawn to scale."""
 
-    size: tuple[float, float]
+    size: tuple[Extent, Extent]
     """Width and height of what is shown [m]."""
-    scale: int = 40
+    scale: Annotated[int, Field(ge=1, le=1000)] = 40
     """Pixels for each metre."""
-    grid: float | None = None
+    grid: Annotated[float, Field(ge=0.01, le=1e4)] | None = None
     """Distance of grid lines, with numbers at the edges [m]."""
     items: list[Item]
     """The things in it, the first at the bottom."""
+
+    @model_validator(mode="after")
+    def _of_a_size_that_is_looked_at(self) -> Drawing:
+        pixels = self.size[0] * self.size[1] * self.scale**2
+        if pixels > _MAX_PIXELS:
+            raise ValueError(f"the picture would have {pixels:.3g} pixels, at most {_MAX_PIXELS:g}; reduce `scale`")
+        return self
 
 
 def draw(drawing: Drawing) -> bytes:

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, create_model, model_validator
 
 from irsim_evals.cases.drawing import Drawing, Record
-from irsim_evals.grader.matching import Quantity
+from irsim_evals.grader.matching import Quantity, Seeds
 from irsim_evals.grader.predicates._base import Predicate, registered
 from irsim_evals.grader.selection import Selector
 
@@ -22,6 +22,7 @@ __all__ = [
 ]  # fmt: skip
 
 Disposition = Literal["build", "ask", "flag"]
+Positive = Annotated[float, Field(gt=0, le=1e6)]
 _NAMED = ("number", "integer", "boolean")
 
 
@@ -32,9 +33,9 @@ class Parameter(Record):
     """Its value in the case as published."""
     choose: list[Any] | None = None
     """Values that an instance draws from."""
-    between: tuple[float, float] | None = None
+    between: tuple[Quantity, Quantity] | None = None
     """Range that an instance draws from."""
-    step: float = 0.1
+    step: Positive = 0.1
     """Values from a range are multiples of this."""
 
     @model_validator(mode="after")
@@ -49,7 +50,7 @@ class _AssertionBase(Record):
     """Name of the assertion, unique in the case."""
     soft: bool = False
     """Reported, but not needed for the strict pass."""
-    weight: float = 1.0
+    weight: Positive = 1.0
     """Weight in the share of assertions that hold."""
     when: Literal["always", "built", "unbuilt"] | None = None
     """Whether it counts only if there is a scenario, or only if there is not; default: with a scenario if it is about
@@ -87,7 +88,7 @@ Assertion: Any = create_model("Assertion", __base__=_AssertionBase, **_predicate
 class EpisodePlan(Record):
     """Episodes that are simulated, and what must happen in each."""
 
-    seeds: list[int] = [0]
+    seeds: Seeds = [0]
     """One episode per seed."""
     seconds: Quantity
     """Simulated time [s]; an episode goes on after all robots have arrived."""
@@ -166,7 +167,7 @@ class Case(Record):
     ``irsim-evals grade --run-programs`` says so."""
     disposition: list[Disposition] = ["build"]
     """Ways in which the agent may answer: build a scenario, ask first, or say that it cannot be done."""
-    seeds: list[int] = [0]
+    seeds: Seeds = [0]
     """Seeds of the worlds that assertions about the start look at."""
     overlap: bool = False
     """Whether bodies may overlap at the start; ``overlap_free`` then says how often."""

@@ -11,7 +11,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from irsim.common.angles import wrap
 
-__all__ = ["TOLERANCES", "UNITS", "Kind", "Match", "Quantity", "matches", "quantity", "show"]
+__all__ = ["TOLERANCES", "UNITS", "Counted", "Kind", "Match", "Quantity", "Seeds", "matches", "quantity", "show"]
 
 UNITS: dict[str, float] = {
     "m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": 0.3048, "in": 0.0254, "yd": 0.9144,
@@ -36,6 +36,8 @@ TOLERANCES: dict[str, tuple[float, float]] = {
     "share": (0.02, 0.005),
 }
 """Relative and absolute tolerance of each kind of number; the larger one applies."""
+MAX_QUANTITY = 1e9
+"""Largest number of a case, in SI units."""
 _ROUGHLY = 0.2
 """Relative tolerance of `about`: what a prompt calls about, roughly or circa."""
 
@@ -60,8 +62,12 @@ def quantity(value: float | int | str) -> float:
     return float(number) * UNITS[unit] / (UNITS[per] if per else 1.0)
 
 
-Quantity = Annotated[float, BeforeValidator(quantity)]
+Quantity = Annotated[float, Field(allow_inf_nan=False, ge=-MAX_QUANTITY, le=MAX_QUANTITY), BeforeValidator(quantity)]
 """A number in SI units, or a text with a unit."""
+Counted = Annotated[int, Field(ge=0, le=100_000)]
+"""A number of things: steps, episodes, laps, robots."""
+Seeds = Annotated[list[Annotated[int, Field(ge=0, lt=2**53)]], Field(max_length=1000)]
+"""Seeds of episodes or worlds."""
 
 
 def _value(value: Any) -> Any:
@@ -73,7 +79,12 @@ def _value(value: Any) -> Any:
             return quantity(value)
         except ValueError:
             return value
+    if isinstance(value, (int, float)) and not abs(value) <= MAX_QUANTITY:
+        raise ValueError(f"{value!r} is not between -{MAX_QUANTITY:g} and {MAX_QUANTITY:g}")
     return value
+
+
+_LIMITS = {"minimum": -MAX_QUANTITY, "maximum": MAX_QUANTITY}
 
 
 class Match(BaseModel):
@@ -102,7 +113,7 @@ class Match(BaseModel):
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> Any:
         """A bare value is allowed, too."""
         schema = handler.resolve_ref_schema(handler(core_schema))
-        return {"anyOf": [schema, {"type": ["number", "string", "boolean", "array", "null"]}]}
+        return {"anyOf": [schema, {"type": ["number", "string", "boolean", "array", "null"], **_LIMITS}]}
 
     @model_validator(mode="before")
     @classmethod

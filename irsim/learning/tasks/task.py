@@ -26,7 +26,7 @@ from pydantic import AfterValidator, Field, model_validator
 from irsim.learning.rewards._options import REWARDS, RewardOptions
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
-from irsim.options.units import Bool, Fraction, Integer, Number, Seconds, Value
+from irsim.options.units import Bool, Fraction, Integer, LongInteger, Number, Seconds, Value
 from irsim.policies.networks.document import Meaning, OutputOptions
 from irsim.policies.networks.layout import Layout
 from irsim.policies.networks.parts._options import PARTS, PartOptions
@@ -158,7 +158,7 @@ class Curriculum(Options):
     episodes: Annotated[Integer, Field(ge=1, le=1_000_000)] = 200
     """Number of the last episodes of learners, all of the present level, of which the share is taken. It is taken only
     when there are as many."""
-    start: Annotated[Integer, Field(ge=0)] = 0
+    start: Annotated[LongInteger, Field(ge=0)] = 0
     """Level at the start, from 0."""
 
     @model_validator(mode="after")
@@ -207,9 +207,9 @@ class Ends(Options):
 class Seeds(Options):
     """Seeds of the worlds. Tests on other seeds show what a policy has learnt beyond its training."""
 
-    train: Annotated[Integer, Field(ge=0, lt=2**53)] = 1_000_000
+    train: Annotated[LongInteger, Field(ge=0)] = 1_000_000
     """Seed of the first world in training; world i has this number plus i."""
-    validation: Annotated[Integer, Field(ge=0, lt=2**53)] = 900_000
+    validation: Annotated[LongInteger, Field(ge=0)] = 900_000
     """First of the seeds on which a training measures its success."""
     validation_count: Annotated[Integer, Field(ge=1, le=100_000)] = 100
     """Number of these seeds."""

@@ -13,7 +13,7 @@ from irsim.common.yaml.plain import read_value
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim.options.base import Options
-from irsim.options.units import Bool, Fraction, Integer, Number, Seconds
+from irsim.options.units import Bool, Fraction, Integer, LongInteger, Number, Seconds
 from irsim.scenario.messages.translate import option_message, option_problems
 
 __all__ = ["AnySettings", "SarlSettings", "TrainingSettings", "read_settings", "settings_class"]
@@ -34,7 +34,7 @@ class SarlSettings(Options):
     """Algorithm: socially attentive reinforcement learning (Chen et al. 2019)."""
     steps: Count = 450_000
     """Decisions of all learners after the demonstrations, at most."""
-    seed: Annotated[Integer, Field(ge=0, lt=2**32)] = 0
+    seed: Annotated[LongInteger, Field(ge=0, lt=2**32)] = 0
     """Seed of the first weights, of exploration and of the order of samples."""
     demonstrations: Count = 2000
     """Episodes that the behaviors drive."""
@@ -92,9 +92,9 @@ class TrainingSettings(Options):
 
     algo: Literal["ppo"] = "ppo"
     """Algorithm: proximal policy optimization (Schulman et al. 2017)."""
-    steps: Annotated[Integer, Field(ge=1)] = 1_000_000
+    steps: Annotated[LongInteger, Field(ge=1)] = 1_000_000
     """Decisions of all learners, at most."""
-    seed: Annotated[Integer, Field(ge=0, lt=2**32)] = 0
+    seed: Annotated[LongInteger, Field(ge=0, lt=2**32)] = 0
     """Seed of the first weights, of exploration and of the order of samples."""
     slots: Count = 128
     """Number of learners at once, at least; worlds are whole."""

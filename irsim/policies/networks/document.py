@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
-from irsim.options.units import Bool, Integer, Number, Seconds
+from irsim.options.units import Bool, LongInteger, Number, Seconds
 from irsim.policies.networks.layers._options import LAYERS, LayerOptions
 from irsim.policies.networks.layout import Layout, layout_needs
 from irsim.policies.networks.lookahead import Lookahead
@@ -102,11 +102,11 @@ class Card(Options):
     """Scenario or suite of the training."""
     protocol: Text = ""
     """Protocol on arrival in the training: `freeze`, `yield` or both."""
-    seeds: Annotated[list[Integer], Field(max_length=1000)] = []
+    seeds: Annotated[list[LongInteger], Field(max_length=1000)] = []
     """Seeds of the training."""
-    steps: Annotated[Integer, Field(ge=0)] | None = None
+    steps: Annotated[LongInteger, Field(ge=0)] | None = None
     """Decisions of all robots in the training."""
-    notes: Annotated[dict[Label, Text | Number | Integer | Bool], Field(max_length=100)] = {}
+    notes: Annotated[dict[Label, Text | Number | LongInteger | Bool], Field(max_length=100)] = {}
     """Anything else."""
 
 

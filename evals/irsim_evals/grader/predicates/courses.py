@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from irsim_evals.grader.matching import Match, Quantity, matches, show
+from irsim_evals.grader.matching import Counted, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, judged, register, summary
 
@@ -25,7 +25,7 @@ class Visits(OfBodies, EpisodePredicate):
     """Places in the order in which they are visited [m]."""
     tol: Quantity = 0.3
     """Greatest distance from a place that counts as being there [m]."""
-    laps: int = 1
+    laps: Counted = 1
     """How often the whole list is visited, each time from its first place on."""
     stray: Quantity | None = None
     """Greatest distance of the path from the straight lines between the places, the way back to the first one

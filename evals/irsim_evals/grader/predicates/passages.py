@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import shapely
 import shapely.affinity
 
-from irsim_evals.grader.matching import Match, Quantity, matches, show
+from irsim_evals.grader.matching import Counted, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register
 
@@ -91,7 +91,7 @@ class Corridor(OfBodies, ScenePredicate):
 
     width: Match
     """Accepted free widths [m], measured across the line at each section."""
-    sections: int = 12
+    sections: Counted = 12
     """Number of sections, evenly spaced from start to goal."""
     direction: Quantity | None = None
     """Direction of the corridor [rad], if not that from start to goal."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import AfterValidator
 
 from irsim.options.registry import BEHAVIORS, KINEMATICS
-from irsim_evals.grader.matching import UNITS, Match, Quantity, matches, quantity, show
+from irsim_evals.grader.matching import UNITS, Counted, Match, Quantity, matches, quantity, show
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register
 from irsim_evals.grader.properties import value_of, yaml_path
 
@@ -149,7 +149,7 @@ class Says(AnswerPredicate):
     """None of these occurs."""
     about: str = ""
     """Its meaning in words, for the evidence."""
-    turn: int | None = None
+    turn: Counted | None = None
     """Number of the turn whose reply is meant, from 1 on; default: the last one."""
 
     def observe(self, material: Material) -> Observation:
@@ -183,7 +183,7 @@ class MentionsLimit(AnswerPredicate):
 
     limits: dict[str, list[str]]
     """Name of a limit → regular expressions, one of which occurs."""
-    at_least: int | None = None
+    at_least: Counted | None = None
     """How many of them must be named; default: all."""
 
     def observe(self, material: Material) -> Observation:

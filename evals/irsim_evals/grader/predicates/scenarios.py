@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import field_validator
 
 from irsim_evals.grader.artefact import scenarios_in
-from irsim_evals.grader.matching import Match, Quantity, matches
+from irsim_evals.grader.matching import Counted, Match, Quantity, matches
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, Predicate, register, registered
 from irsim_evals.grader.runs_of_answers import Runs, runs_of
 
@@ -84,14 +84,14 @@ class Comparison(AnswerPredicate):
 
     stage = "relations"
 
-    robots: list[int]
+    robots: list[Counted]
     """Numbers of robots; there is at least one scenario for each."""
     behaviors: list[str]
     """Behaviors that are compared: each has a file of its own for each number of robots, or what runs the scenarios
     sets it."""
-    episodes: int
+    episodes: Counted
     """Number of episodes of each behavior and number of robots."""
-    steps: int
+    steps: Counted
     """Horizon in steps."""
     metrics: dict[str, list[str]]
     """Name → regular expressions, one of which occurs in what runs the scenarios or in what it prints."""

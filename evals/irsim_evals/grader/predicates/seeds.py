@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from irsim.diagnostics.errors import PlacementError
-from irsim_evals.grader.matching import Quantity, show
+from irsim_evals.grader.matching import Counted, Quantity, Seeds, show
 from irsim_evals.grader.predicates._base import Observation, OfBodies, SeedsPredicate, register
 from irsim_evals.grader.sanity import overlaps
 from irsim_evals.grader.scene import open_scene
@@ -27,7 +27,7 @@ class Varies(OfBodies, SeedsPredicate):
 
     stage = "relations"
 
-    seeds: list[int] = [0, 1, 2, 3, 4]
+    seeds: Seeds = [0, 1, 2, 3, 4]
     """Seeds that are compared."""
     spread: Quantity = 0.0
     """Least standard deviation of each coordinate over bodies and seeds [m]."""
@@ -85,7 +85,7 @@ class OverlapFree(SeedsPredicate):
 
     stage = "sane"
 
-    seeds: int = 20
+    seeds: Counted = 20
     """Number of seeds, from 0 on."""
     share: Quantity
     """Least share of them."""
