@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from xml.etree import ElementTree as ET
 
 from irsim.bridges.mujoco.robots import LIDAR_HEIGHT, rig_of
@@ -62,12 +62,14 @@ class SdfWorld:
         scene: The scene.
         paths: Name of an obstacle that moved -> (K, 4) time [s], x, y [m], yaw [rad] of its waypoints.
 
+        left_out: Names of objects that are not written.
+
     Attributes:
         meshes: Name of a file of the folder ``meshes`` -> its text, complete after :meth:`write`.
     """
 
-    def __init__(self, scene: SceneDescription, paths: Mapping[str, Floats]) -> None:
-        self.scene, self.paths = scene, paths
+    def __init__(self, scene: SceneDescription, paths: Mapping[str, Floats], left_out: Collection[str] = ()) -> None:
+        self.scene, self.paths, self.left_out = scene, paths, left_out
         self.meshes: dict[str, str] = {}
         self._names: set[str] = set()
         self._solids: dict[ET.Element, int] = {}  # number of the last one of a link
@@ -79,7 +81,7 @@ class SdfWorld:
         self._surroundings()
         self._map()
         for agent in self.scene.agents:
-            if not agent.parts:
+            if not agent.parts or agent.name in self.left_out:
                 continue
             if agent.role == "robot":
                 self._robot(agent)
@@ -247,3 +249,7 @@ def _sensor(link: ET.Element, lidar: Lidar, topic: str) -> None:
     reach = ET.SubElement(element, "range")
     _text(reach, "min", numbers(max(lidar.range_min, 0.01)))
     _text(reach, "max", numbers(lidar.range_max))
+    if lidar.noise_std:
+        noise = ET.SubElement(element, "noise")
+        for tag, text in (("type", "gaussian"), ("mean", "0"), ("stddev", numbers(lidar.noise_std))):
+            _text(noise, tag, text)

@@ -137,7 +137,7 @@ def _lidars(simulation: Simulation, row: int) -> tuple[Lidar, ...]:
                 range_min=float(chosen.range_min),
                 range_max=float(chosen.range_max),
                 period=float(chosen.scan_time),
-                noise=bool(chosen.noise),
+                noise_std=float(chosen.std) if chosen.noise else 0.0,
                 between=chosen.angle_range / max(count - 1 if chosen.endpoint else count, 1) if count > 1 else 0.0,
             )
         )

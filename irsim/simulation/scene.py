@@ -30,7 +30,7 @@ class Lidar:
         beams: Number of beams.
         range_min, range_max: Shortest and longest range [m].
         period: Time between two scans [s].
-        noise: Whether ranges are noisy.
+        noise_std: Standard deviation of the ranges [m]; 0 without noise.
         between: Angle between neighboring beams [rad].
     """
 
@@ -43,7 +43,7 @@ class Lidar:
     range_min: float
     range_max: float
     period: float
-    noise: bool = False
+    noise_std: float = 0.0
     between: float = 0.0
 
     @property

@@ -65,6 +65,28 @@ def test_a_run_becomes_a_world_with_actors_on_the_recorded_paths(traffic: Run) -
     assert rover.findtext("link/sensor/lidar/scan/horizontal/samples") == "5"
 
 
+def test_noise_is_written_and_who_never_came_is_left_out() -> None:
+    run = recorded(
+        """\
+world: {width: 12, height: 8}
+robot:
+  - {name: rover, kinematics: {name: diff}, state: [1, 1, 0], goal: [5, 1, 0], behavior: {name: dash},
+     sensors: [{name: lidar2d, number: 5, noise: true, std: 0.05}, {name: lidar2d, number: 5}]}
+obstacle:
+  - {name: never, kinematics: {name: omni}, state: [8, 3, 0], goal: [8, 1, 0], behavior: {name: dash}, appear_time: 50}
+""",
+        5,
+        seed=1,
+    )
+    exported = irsim.export_run(run, "world", to="sdf")
+    assert any("never in the world: never" in note for note in exported.notes)
+    world = ET.parse("world/world.sdf").getroot()
+    assert not world.findall(".//*[@name='never']")
+    noises = [lidar.find("noise") for lidar in world.iter("lidar")]
+    assert noises[1] is None
+    assert [noises[0].findtext(tag) for tag in ("type", "mean", "stddev")] == ["gaussian", "0", "0.05"]
+
+
 def test_every_mesh_of_a_world_is_a_file_and_every_file_is_a_closed_prism(traffic: Run) -> None:
     irsim.export_run(traffic, "town", to="sdf")
     named = {uri.text for uri in ET.parse("town/world.sdf").getroot().iter("uri")}

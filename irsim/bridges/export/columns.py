@@ -79,7 +79,8 @@ def columns_of(episodes: Sequence[Episode]) -> list[Column]:
         Column(
             f"control_{number}",
             "number",
-            "Control executed in the step that led here: " + _distinct(episodes, number, 0),
+            "Control commanded in the step that led here, after limits and before the noise of the drive: "
+            + _distinct(episodes, number, 0),
             _distinct(episodes, number, 1),
         )
         for number in range(max(episode.controls for episode in episodes))

@@ -174,7 +174,7 @@ class MujocoBridge(Bridge):
         self.physics = Physics(scene, self.agents, self.options)
         self.physics.start(start.pose)
         self._rays = Rays(self.physics) if self.options.lidar != "off" else None
-        self._noisy = {lidar.key for agent in scene.agents for lidar in agent.lidars if lidar.noise}
+        self._noisy = {lidar.key for agent in scene.agents for lidar in agent.lidars if lidar.noise_std}
         self._last = start.step
 
     def exchange(self, motion: Motion) -> Feedback | None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,6 @@ from irsim.bridges.ros.topics import (
     frame_of,
     laser_frame,
     nanoseconds,
-    pedestrian_names,
     pedestrians,
     ros_names,
 )
@@ -31,6 +31,8 @@ __all__ = ["Outgoing", "body_markers", "body_velocity"]
 
 CYLINDER, LINE_STRIP, _TEXT, TRIANGLES = 3, 4, 9, 11
 """Types of ``visualization_msgs/Marker``."""
+_DELETE_ALL = 3
+"""Action of a marker after which RViz shows none of those before."""
 HEIGHT_M = 0.02
 """Thickness of discs, which lie in the plane like all other bodies."""
 LINE_WIDTH_M = 0.05
@@ -39,23 +41,34 @@ RGB = tuple[float, float, float]
 
 
 def body_markers(
-    messages: Messages, scene: SceneDescription, frames: Mapping[str, str], world: str, *, united: bool = False
+    messages: Messages,
+    scene: SceneDescription,
+    frames: Mapping[str, str],
+    world: str,
+    *,
+    absent: Collection[str] = (),
+    united: bool = False,
 ) -> Any:
-    """Markers of all bodies, and the names of the robots.
+    """Markers of all bodies that are there, and the names of the robots, in place of all markers before.
 
     Args:
         messages: Makes the messages.
         scene: The scene.
         frames: Name of each object that moves -> its frame, which its marker follows.
         world: Frame of all other markers.
+        absent: Names of objects that are not in the world.
         united: Each body is one marker, so that none of its parts shows through another, numbered by its row and as
             opaque as it is drawn; objects that move without a frame are left out.
 
     Returns:
         A ``visualization_msgs/MarkerArray``.
     """
-    markers: list[Any] = []
+    clear = make_marker(messages, "", 0, CYLINDER, (0.0, 0.0, 0.0), 0.0, world, (0.0, 0.0, 0.0))
+    clear.action = _DELETE_ALL
+    markers: list[Any] = [clear]
     for agent in scene.agents:
+        if agent.name in absent:
+            continue
         frame = frames.get(agent.name)
         if united and frame is None and not agent.static:
             continue
@@ -184,9 +197,9 @@ class Outgoing:
         self._names = dict(zip(scene.names, ros_names(scene.names), strict=True))
         self._row = {agent.name: agent.index for agent in scene.agents}
         self._lidars = {lidar.key: lidar for agent in scene.agents for lidar in agent.lidars}
-        self._walkers = [agent.index for agent in pedestrians(scene)]
         self._movers = [agent for agent in scene.agents if agent.moves]
         self._paths: dict[str, Floats] = {}
+        self._absent: frozenset[str] = frozenset()
 
     def frame_of(self, name: str) -> str:
         """Frame of an object."""
@@ -210,7 +223,13 @@ class Outgoing:
         """
         simulated = nanoseconds(state.time)
         stamp = simulated if stamp is None else stamp
+        absent = frozenset(agent.name for agent in self.scene.agents if np.isnan(state.pose[agent.index]).any())
+        makers = {} if absent == self._absent else {"markers": self._markers, "pedestrian_ids": self._ids}
+        self._absent = absent
         for topic in self._topics:
+            if topic.key in makers:
+                yield topic, makers[topic.key](stamp)
+                continue
             message = self._message(topic, state, stamp, simulated)
             if message is not None:
                 yield topic, message
@@ -220,15 +239,17 @@ class Outgoing:
         if topic.key == "clock":
             return make("rosgraph_msgs", "Clock")(make.time(simulated))
         if topic.key == "tf":
-            placed = [(self.frame_of(agent.name), state.pose[agent.index]) for agent in self._movers]
             moved = [
-                make.transform(stamp, self.frame, child, pose.tolist())
-                for child, pose in placed
-                if np.isfinite(pose).all()
+                make.transform(stamp, self.frame, self.frame_of(agent.name), state.pose[agent.index].tolist())
+                for agent in self._movers
+                if agent.name not in self._absent
             ]
             return make("tf2_msgs", "TFMessage")(moved)
         if topic.key == "pedestrians":
-            return make.pose_array(stamp, self.frame, state.pose[self._walkers].tolist())
+            walkers = [agent.index for agent in self._present_pedestrians()]
+            return make.pose_array(stamp, self.frame, state.pose[walkers].tolist())
+        if topic.robot in self._absent:
+            return None
         if topic.lidar is not None and topic.key == "scan":
             return self._scan(self._lidars[topic.lidar], topic, state, stamp)
         if topic.robot is None:
@@ -236,8 +257,6 @@ class Outgoing:
         pose = state.pose[self._row[topic.robot]]
         if topic.key == "reference_path":
             return self._path(topic.robot, state, stamp)
-        if not np.isfinite(pose).all():
-            return None
         if topic.key == "pose":
             return make.stamped_pose(stamp, self.frame, pose.tolist())
         if topic.key == "odom":
@@ -284,10 +303,14 @@ class Outgoing:
 
     def _markers(self, stamp: int) -> Any:
         frames = {agent.name: self.frame_of(agent.name) for agent in self._movers}
-        return body_markers(self.messages, self.scene, frames, self.frame)
+        return body_markers(self.messages, self.scene, frames, self.frame, absent=self._absent)
 
     def _ids(self, stamp: int) -> Any:
-        return self.messages("std_msgs", "String")(pedestrian_names(self.scene))
+        names = [agent.name for agent in self._present_pedestrians()]
+        return self.messages("std_msgs", "String")(json.dumps(names))
+
+    def _present_pedestrians(self) -> list[SceneObject]:
+        return [agent for agent in pedestrians(self.scene) if agent.name not in self._absent]
 
 
 def _with_headings(path: Floats) -> Floats:

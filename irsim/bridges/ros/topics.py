@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -216,11 +215,6 @@ def scene_topics(
 def pedestrians(scene: SceneDescription) -> list[SceneObject]:
     """The obstacles that can move, in the order in which ``/pedestrians`` has them."""
     return [agent for agent in scene.agents if agent.role == "obstacle" and agent.moves]
-
-
-def pedestrian_names(scene: SceneDescription) -> str:
-    """The content of ``/pedestrians/ids``: their names as a JSON list."""
-    return json.dumps([agent.name for agent in pedestrians(scene)])
 
 
 def _suffix(number: int) -> str:

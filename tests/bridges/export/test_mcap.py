@@ -44,10 +44,10 @@ def bag(hall: Run) -> Bag:
 
 def test_topics_are_those_of_a_robot(hall: Run, bag: Bag) -> None:
     robots = {f"/rover_{n}/{topic}" for n in (1, 2) for topic in ("odom", "scan", "scan_1", "goal")}
-    assert set(bag) == robots | {"/clock", "/tf", "/tf_static", "/obstacles", "/rosout", "/markers"}
+    assert set(bag) == robots | {"/clock", "/tf", "/tf_static", "/obstacles", "/obstacles/ids", "/rosout", "/markers"}
     for topic in ("/clock", "/tf", "/obstacles", "/rover_1/odom", "/rover_2/scan_1"):
         assert [time for time, _ in bag[topic]] == pytest.approx(hall.trace().time.tolist())
-    assert all(len(bag[topic]) == 1 for topic in ("/tf_static", "/markers", "/rover_1/goal"))
+    assert all(len(bag[topic]) == 1 for topic in ("/tf_static", "/markers", "/obstacles/ids", "/rover_1/goal"))
 
 
 def test_poses_are_those_of_the_record_everywhere(hall: Run, bag: Bag) -> None:
@@ -117,7 +117,45 @@ def test_markers_have_the_shapes(bag: Bag) -> None:
     assert yaw(crate.pose.orientation) == pytest.approx(0.3)
     assert area(crate.points) == pytest.approx(2)
     assert area(hook.points) == pytest.approx(1.2)  # concave: its hull would have 2
-    assert all(0 < marker.color.a <= 1 for marker in array.markers)
+    assert array.markers[0].action == 3  # of a scene before nothing is left
+    assert all(0 < marker.color.a <= 1 for marker in array.markers[1:])
+
+
+COMERS = """\
+world: {width: 12, height: 8, step_time: 0.1}
+robot:
+  - {name: late, kinematics: {name: diff}, state: [1, 1, 0], goal: [5, 1, 0], behavior: {name: dash}, appear_time: 1,
+     sensors: [{name: lidar2d, number: 5}]}
+  - {name: early, kinematics: {name: diff}, state: [1, 6, 0], goal: [9, 6, 0], behavior: {name: dash}}
+obstacle:
+  - {name: guest, kinematics: {name: omni}, state: [6, 3, 0],
+     behavior: {name: replay, times: [0.5, 1.5], poses: [[6, 3, 0], [7, 3, 0]]}}
+  - {name: never, kinematics: {name: omni}, state: [8, 3, 0], goal: [8, 1, 0], behavior: {name: dash}, appear_time: 50}
+"""
+
+
+def test_who_is_not_there_is_in_no_message() -> None:
+    run = recorded(COMERS, 25, seed=1)
+    assert np.isnan(run.trace().pose).any()
+    irsim.export_run(run, "run.mcap")
+    bag = decoded("run.mcap")
+    for _, message in bag["/tf"]:
+        for moved in message.transforms:
+            assert math.isfinite(moved.transform.translation.x)
+    assert all(math.isfinite(pose.position.x) for _, array in bag["/obstacles"] for pose in array.poses)
+    assert min(time for time, _ in bag["/late/odom"]) == pytest.approx(1.0)
+    assert min(time for time, _ in bag["/late/scan"]) == pytest.approx(1.0)
+    names = [json.loads(message.data) for _, message in bag["/obstacles/ids"]]
+    assert "never" not in [name for known in names for name in known]
+    assert ["guest"] in names
+    assert names[-1] == []  # it left
+    counts = {time: len(array.poses) for time, array in bag["/obstacles"]}
+    for time, message in bag["/obstacles/ids"]:
+        assert counts[time] == len(json.loads(message.data))
+    shown = [{marker.header.frame_id for marker in array.markers[1:]} for _, array in bag["/markers"]]
+    assert "guest/base_link" not in shown[-1]
+    assert "late/base_link" in shown[-1]
+    assert all("never/base_link" not in frames for frames in shown)
 
 
 def area(points: list[Any]) -> float:
@@ -144,7 +182,7 @@ def test_the_file_tells_what_it_shows(hall: Run) -> None:
     latched = {
         c.topic for c in summary.channels.values() if "durability: 1" in c.metadata.get("offered_qos_profiles", "")
     }
-    assert latched == {"/tf_static", "/markers"}
+    assert latched == {"/tf_static", "/markers", "/obstacles/ids"}
     obstacles = next(c for c in summary.channels.values() if c.topic == "/obstacles")
     assert json.loads(obstacles.metadata["names"]) == ["walker"]
 

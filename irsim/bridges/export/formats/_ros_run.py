@@ -81,6 +81,9 @@ class _Writer:
         self.obstacles: Topic | None = None
         if obstacles:
             self.obstacles = bag.topic("/obstacles", "geometry_msgs/msg/PoseArray", names=json.dumps(obstacles))
+            self.obstacle_ids = bag.topic("/obstacles/ids", "std_msgs/msg/String", latched=True)
+        self.markers = bag.topic("/markers", "visualization_msgs/msg/MarkerArray", latched=True)
+        self.absent: frozenset[int] | None = None
         self.odometry = self._robot_topics(names, "odom", "nav_msgs/msg/Odometry")
         self.goals = self._robot_topics(names, "goal", "geometry_msgs/msg/PoseStamped")
         mounted = [(names[lidar.actor], f"_{lidar.number}" if lidar.number else "") for lidar in episode.lidars]
@@ -92,14 +95,11 @@ class _Writer:
         return [self.bag.topic(f"/{name}/{topic}", kind) if actor.role == "robot" else None for name, actor in pairs]
 
     def add_scene(self) -> bool:
-        """Add bodies and map; whether the map, if there is one, could be added."""
+        """Keep the bodies and add the map; whether the map, if there is one, could be added."""
         bag, episode = self.bag, self.episode
-        follows = {actor.name: frame for actor, frame in zip(episode.actors, self.frames, strict=True)}
         with initial_scene(episode.run, episode.limits) as env:
-            scene = describe_scene(env.simulation)
-        markers = body_markers(self.messages, scene, follows, _WORLD, united=True)
+            self.scene = scene = describe_scene(env.simulation)
         grid = occupancy_grid(self.messages, scene, _WORLD)
-        bag.add(bag.topic("/markers", "visualization_msgs/msg/MarkerArray", latched=True), 0, markers)
         if grid is not None:
             bag.add(bag.topic("/map", "nav_msgs/msg/OccupancyGrid", latched=True), 0, grid)
         return grid is not None or scene.grid is None
@@ -125,25 +125,41 @@ class _Writer:
         for row, (step, time, poses, velocities) in enumerate(zip(*(c.tolist() for c in columns), strict=True)):
             stamp = nanoseconds(time)
             bag.add(self.clock, stamp, clock(messages.time(stamp)))
-            moved = zip(self.frames, poses, strict=True)
+            absent = frozenset(np.flatnonzero(~np.isfinite(trace.pose[row]).all(axis=1)).tolist())
+            if absent != self.absent:
+                self._add_bodies(absent, stamp)
+            moved = [(self.frames[number], pose) for number, pose in enumerate(poses) if number not in absent]
             bag.add(self.tf, stamp, transforms([messages.transform(stamp, _WORLD, *placed) for placed in moved]))
             for number, topic in robots:
+                if number in absent:
+                    continue
                 frame = self.frames[number]
                 bag.add(topic, stamp, messages.odometry(stamp, _WORLD, frame, poses[number], velocities[number]))
             if self.obstacles is not None:
-                placed = [messages.pose(*poses[number]) for number in others]
+                placed = [messages.pose(*poses[number]) for number in others if number not in absent]
                 bag.add(self.obstacles, stamp, array(messages.header(stamp, _WORLD), placed))
             for number in np.flatnonzero(changed[row]).tolist():
                 self._add_goal(self.goals[number], stamp, trace.goal[row, number].tolist())
-            self._add_scans(trace, row, stamp)
+            self._add_scans(trace, row, stamp, absent)
             while self.events and self.events[0].step <= step:
                 bag.add(self.log, stamp, _log(messages, stamp, self.events.popleft()))
 
-    def _add_scans(self, trace: Trace, row: int, stamp: int) -> None:
-        """Add the scans of one step, as far as scans were recorded."""
+    def _add_bodies(self, absent: frozenset[int], stamp: int) -> None:
+        """Add the markers of who is there from now on, and the names of the obstacles among them."""
+        self.absent, actors = absent, self.episode.actors
+        gone = {actors[number].name for number in absent}
+        follows = {actor.name: frame for actor, frame in zip(actors, self.frames, strict=True)}
+        markers = body_markers(self.messages, self.scene, follows, _WORLD, absent=gone, united=True)
+        self.bag.add(self.markers, stamp, markers)
+        if self.obstacles is not None:
+            names = [actor.name for actor in actors if actor.role == "obstacle" and actor.name not in gone]
+            self.bag.add(self.obstacle_ids, stamp, self.messages("std_msgs", "String")(json.dumps(names)))
+
+    def _add_scans(self, trace: Trace, row: int, stamp: int, absent: frozenset[int]) -> None:
+        """Add the scans of one step, as far as scans were recorded and their robots are there."""
         for lidar, topic, frame in zip(self.episode.lidars, self.scans, self.laser_frames, strict=True):
             ranges = trace.ranges[lidar.key]
-            if row < len(ranges):
+            if row < len(ranges) and lidar.actor not in absent:
                 duration = float(lidar.options["scan_time"])
                 scan = self.messages.scan(stamp, frame, lidar.angles, lidar.limits, duration, ranges[row])
                 self.bag.add(topic, stamp, scan)

@@ -3,12 +3,15 @@
 All stamps are simulated time, the fixed frame is ``world``, and the topics are:
 
 - ``/clock``, and ``/tf`` from ``world`` to ``<name>/base_link`` of each object that moves, in every step
-- ``/<robot>/odom`` (twist in the body frame), ``/<robot>/scan``, ``/<robot>/scan_1``, … in every step; the range of a
-  beam that hit nothing is infinite
+- ``/<robot>/odom`` (the true pose, without drift and with zero covariance; twist in the body frame),
+  ``/<robot>/scan``, ``/<robot>/scan_1``, … in every step; the range of a beam that hit nothing is infinite
 - ``/<robot>/goal`` whenever it changes, and ``/obstacles``, a PoseArray of the moving obstacles, in every step
 - ``/rosout`` with the events
-- once, for those who subscribe later as well: ``/tf_static`` with the mounts of the lidars, ``/markers`` with all
-  bodies, and ``/map``
+- latched, whenever objects come or go: ``/markers`` with all bodies that are there, in place of those before, and
+  ``/obstacles/ids`` with the names of the poses of ``/obstacles`` as a JSON list
+- once, for those who subscribe later as well: ``/tf_static`` with the mounts of the lidars, and ``/map``
+
+Who is not in the world at a time is in no message of that time.
 
 Names of objects become parts of topics and frames with letters, digits and underscores only. The file has the scenario
 as an attachment, and seed, versions and result as metadata ``irsim``.

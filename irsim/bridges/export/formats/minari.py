@@ -12,10 +12,11 @@ Row t of the observations is the state before action t:
 - ``goal``: x ahead and y to the left [m] of the present goal, and its heading [rad], in the frame of the robot
 - ``scan``, with lidars: ranges [m] from right to left, one lidar after the other; the greatest range for a miss
 
-Actions are the controls that the drive executed, in the units of the scenario, after its limits. The reward is 1 for
-arriving, -1 for each contact that begins, else 0. Infos are ``step``, ``time`` [s], the ``goal`` in the world frame,
-and the flags ``arrived``, ``collided``, ``stopped`` and ``between_steps``: whether it touched something within the step
-and at neither end of it, which costs no reward. Each episode has run, robot, seed and scenario as metadata.
+Actions are the controls that the drive got, in the units of the scenario, after its limits and before its noise. The
+reward is 1 for arriving, -1 for each contact that begins, else 0. Infos are ``step``, ``time`` [s], the ``goal`` in
+the world frame, and the flags ``arrived``, ``collided``, ``stopped`` and ``between_steps``: whether it touched
+something within the step and at neither end of it, which costs no reward. Each episode has run, robot, seed and
+scenario as metadata.
 """
 
 from __future__ import annotations

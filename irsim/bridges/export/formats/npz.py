@@ -27,7 +27,7 @@ _UNITS = {
     "time": "s",
     "pose": "m, m, rad: x, y, heading in the world frame",
     "velocity": "m/s, m/s, rad/s: mean over the step that led to the row, world frame; NaN in row 0",
-    "control": "units of the drive: executed in the step that led to the row, zero padded",
+    "control": "units of the drive: commanded in the step that led to the row, before noise, zero padded",
     "goal": "m, m, rad: x, y, heading in the world frame; NaN without a goal",
     "ranges": "m, from right to left; infinite: nothing was hit",
 }

@@ -1,7 +1,8 @@
 """``parquet``: a table for pandas, DuckDB, Polars and Spark, with one row per step and object.
 
 Its columns are ``run``, ``step``, ``time``, ``name``, ``role``, the pose ``x``, ``y``, ``theta``, the velocity ``vx``,
-``vy``, ``yaw_rate``, ``speed``, the executed controls ``control_0``, …, the present goal ``goal_x``, ``goal_y``,
+``vy``, ``yaw_rate``, ``speed``, the commanded controls ``control_0``, … (after
+limits, before the noise of the drive), the present goal ``goal_x``, ``goal_y``,
 ``goal_theta``, ``goal_distance``, the flags ``arrived``, ``collided``, ``stopped`` and ``between_steps`` (it touched
 something within the step, at neither end of it), and a list of ranges ``ranges_0``, … for each lidar of an object.
 Numbers that do not exist are null: velocities and controls at the start, goals of objects without one, controls that

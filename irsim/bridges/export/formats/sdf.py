@@ -1,8 +1,8 @@
 """``sdf``: a run as a world of Gazebo, a folder with ``world.sdf`` and its meshes; needs no library.
 
-Obstacles that moved are actors on the recorded paths, other obstacles and the map are static models. Robots are models
-at their start with their lidars, and listen for velocities on ``/model/<name>/cmd_vel``. Shapes are boxes, cylinders
-and meshes, 1 m high.
+Obstacles that moved are actors on the recorded paths, other obstacles and the map are static models; those that never
+came into the world are left out. Robots are models at their start with their lidars and the noise of these, and listen
+for velocities on ``/model/<name>/cmd_vel``. Shapes are boxes, cylinders and meshes, 1 m high.
 """
 
 from __future__ import annotations
@@ -37,13 +37,17 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     time = np.array([state.time for state in states])
     pose = np.array([state.pose for state in states])
     episode.progress(episode.last_step + 1)
-    world = SdfWorld(scene, _paths(scene, time, pose))
+    there = np.isfinite(pose).all(axis=2).any(axis=0)
+    absent = [agent.name for agent in scene.agents if not there[agent.index]]
+    world = SdfWorld(scene, _paths(scene, time, pose), absent)
     text = world.write()
     (target / "meshes").mkdir()
     for file, mesh in world.meshes.items():
         (target / "meshes" / file).write_text(mesh, encoding="utf-8")
     (target / "world.sdf").write_text(text, encoding="utf-8")
     notes = ["robots stand at their start; publish velocities on /model/<name>/cmd_vel to move them"]
+    if absent:
+        notes.append(f"left out, as they were never in the world: {', '.join(absent[:10])}{' …' * (len(absent) > 10)}")
     if every > 1:
         notes.append(f"paths of actors have every {every}th step")
     return notes
