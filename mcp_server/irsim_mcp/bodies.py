@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import MutableMapping
-from typing import Any
-
 import anyio
 from mcp.types import INVALID_REQUEST, JSONRPCRequest
 from starlette.responses import PlainTextResponse, Response
@@ -21,6 +18,11 @@ _MOST_TOGETHER = 64 * 1024**2
 _SECONDS = 60.0
 """Time for a body [s]."""
 
+_STREAM = "subscriptions/listen"
+"""Method whose answer has no end, and so holds a connection."""
+_MOST_STREAMS = 64
+"""Number of such answers at the same time."""
+
 
 class WholeMessages:
     """Passes on requests whose body is a message, and answers all others.
@@ -32,7 +34,8 @@ class WholeMessages:
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
         self._held = 0
-        self._in_use: set[tuple[bytes, str]] = set()
+        self._streams = 0
+        self._in_use: set[tuple[bytes, str] | None] = set()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Read the body of a POST and pass it on, or answer it."""
@@ -71,28 +74,32 @@ class WholeMessages:
         return None
 
     async def _answer(self, body: bytes, scope: Scope, receive: Receive, send: Send) -> None:
-        headers: MutableMapping[bytes, bytes] = dict(scope["headers"])
-        used = None
+        session = dict(scope["headers"]).get(b"mcp-session-id")
         try:
             message = frame(body)
-            session = headers.get(b"mcp-session-id")
-            if session is not None and isinstance(message, JSONRPCRequest):
-                used = (session, str(message.id))
-                if used in self._in_use:
-                    used = None
-                    what = "a request with this id is not answered yet; each request needs an id of its own"
-                    raise BadFrame(INVALID_REQUEST, what, message.id)
-                self._in_use.add(used)
+            request = message if isinstance(message, JSONRPCRequest) else None
+            used = (session, str(request.id)) if request is not None and session is not None else None
+            if request is not None and used in self._in_use:
+                what = "a request with this id is not answered yet; each request needs an id of its own"
+                raise BadFrame(INVALID_REQUEST, what, request.id)
         except BadFrame as bad:
             await Response(bad.answer(), status_code=400, media_type="application/json")(scope, receive, send)
             return
+        stream = request is not None and request.method == _STREAM
+        if stream and self._streams >= _MOST_STREAMS:
+            refused = PlainTextResponse("Too many streams of notices at the same time", status_code=503)
+            await refused(scope, receive, send)
+            return
         given: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
 
-        async def again() -> Any:
+        async def again() -> Message:
             return given.pop() if given else await receive()
 
+        self._streams += stream
+        if used is not None:
+            self._in_use.add(used)
         try:
             await self._app(scope, again, send)
         finally:
-            if used is not None:
-                self._in_use.discard(used)
+            self._streams -= stream
+            self._in_use -= {used}

@@ -149,7 +149,7 @@ def serve(server: MCPServer, where: Address, token: str | None, names: Sequence[
 
     app = application(server, where, token, names)
     family = socket.AF_INET6 if ":" in where.host else socket.AF_INET
-    with socket.socket(family) as listening:
+    with socket.socket(family, proto=socket.IPPROTO_TCP) as listening:  # by which asyncio sends answers without delay
         if os.name == "posix":
             listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

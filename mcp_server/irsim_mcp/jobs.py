@@ -39,7 +39,15 @@ from irsim.runs.store import (
 from irsim_mcp.answers import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace, held
-from irsim_mcp.worker import HEAD, Progress, Workers, process_options, workspace_data
+from irsim_mcp.worker import (
+    HEAD,
+    NOT_STARTED_FIX,
+    Progress,
+    Workers,
+    not_started,
+    process_options,
+    workspace_data,
+)
 
 __all__ = ["Jobs"]
 
@@ -275,7 +283,10 @@ class _Keeper(threading.Thread):
     def run(self) -> None:
         """Start the process, write its progress and its result."""
         try:
-            answer = self._answer()
+            try:
+                answer = self._answer()
+            except OSError as error:
+                answer = _problem("worker-failed", not_started(error), NOT_STARTED_FIX)
             if answer is None:
                 mark_cancelled(self._job)
                 return
@@ -317,5 +328,5 @@ class _Keeper(threading.Thread):
             child.end()
 
 
-def _problem(code: str, what: str) -> dict[str, Any]:
-    return {"error": {"code": code, "what": what, "fix": "ask for fewer seeds, scenarios or steps"}}
+def _problem(code: str, what: str, fix: str = "ask for fewer seeds, scenarios or steps") -> dict[str, Any]:
+    return {"error": {"code": code, "what": what, "fix": fix}}

@@ -22,7 +22,16 @@ from irsim_mcp.answers import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
 
-__all__ = ["HEAD", "Progress", "Workers", "missing_limits", "process_options", "workspace_data"]
+__all__ = [
+    "HEAD",
+    "NOT_STARTED_FIX",
+    "Progress",
+    "Workers",
+    "missing_limits",
+    "not_started",
+    "process_options",
+    "workspace_data",
+]
 
 Progress = Callable[[int, int], Awaitable[None]]
 """Callback ``(steps_done, steps_total)``."""
@@ -37,6 +46,8 @@ _MAX_READERS = 2
 """Number of processes for short work at the same time."""
 _POLL_S = 0.02
 """Time between two looks whether a process for short work is free [s]."""
+NOT_STARTED_FIX = "call again when this machine has more memory, processes and open files to spare"
+"""What helps if a process could not be started."""
 _INHERITED = (
     ("APPDATA", "LOCALAPPDATA", "PATHEXT", "SYSTEMDRIVE", "SYSTEMROOT", "TEMP", "TMP", "USERPROFILE")
     if os.name == "nt"
@@ -80,6 +91,8 @@ class Workers:
         self._reading += 1
         try:
             return await self._work({"task": task, "arguments": dict(arguments)}, seconds, None)
+        except OSError as error:
+            raise failure("worker-failed", not_started(error), fix=NOT_STARTED_FIX) from None
         finally:
             self._reading -= 1
 
@@ -108,6 +121,8 @@ class Workers:
         self._at_work += 1
         try:
             return await self._work({"task": task, "arguments": dict(arguments)}, seconds, progress)
+        except OSError as error:
+            raise failure("worker-failed", not_started(error), fix=NOT_STARTED_FIX) from None
         finally:
             self._at_work -= 1
 
@@ -205,6 +220,11 @@ def _user_site() -> str:
     import site
 
     return site.getusersitepackages()
+
+
+def not_started(error: OSError) -> str:
+    """What is said of a process that the system did not start."""
+    return f"the process that does the work could not be started: {error.strerror or error}"
 
 
 def missing_limits() -> list[str]:

@@ -18,13 +18,13 @@ from urllib.parse import urlsplit
 import httpx2
 import pytest
 
-from irsim_mcp import bodies, connections, http, log
+from irsim_mcp import bodies, connections, http, log, worker
 from irsim_mcp.bodies import WholeMessages
 from irsim_mcp.connections import most_connections, server_of
 from irsim_mcp.hosts import Address
 from irsim_mcp.http import application
 from irsim_mcp.server import build_server
-from tests.mcp.conftest import linux
+from tests.mcp.conftest import ROOM, Caller, linux
 from tests.mcp.test_http import DISCOVER, HEADERS, served
 
 if sys.platform != "win32":
@@ -205,6 +205,57 @@ def test_bodies_share_memory(monkeypatch: pytest.MonkeyPatch) -> None:
         clients.append(connect())
         clients[3].sendall(WHOLE)
         assert clients[3].recv(1000).startswith(b"HTTP/1.1 200 OK")
+
+
+def test_streams_without_end_leave_connections_for_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bodies, "_MOST_STREAMS", 2)
+    listen = MESSAGE.replace(b"ping", b"subscriptions/listen")
+    whole = HEAD + b"Content-Length: %d\r\n\r\n" % len(listen) + listen
+
+    async def app(scope: Any, receive: Any, send: Any) -> None:
+        if scope["type"] == "http" and b"listen" in (await receive())["body"]:
+            await send({"type": "http.response.start", "status": 200, "headers": []})
+            await send({"type": "http.response.body", "body": b":", "more_body": True})
+            await receive()
+        elif scope["type"] == "http":
+            await plain(scope, receive, send)
+
+    with serving(WholeMessages(app)) as (connect, server):
+        clients = [connect() for _ in range(3)]
+        heads = []
+        for client in clients:
+            client.sendall(whole)
+            heads.append(client.recv(100)[:13])
+        assert heads == [b"HTTP/1.1 200 ", b"HTTP/1.1 200 ", b"HTTP/1.1 503 "]
+        clients[0].close()
+        end = time.monotonic() + 10
+        while len(server.server_state.tasks) > 1 and time.monotonic() < end:
+            time.sleep(0.01)
+        clients.append(connect())
+        clients[3].sendall(whole)
+        assert clients[3].recv(100).startswith(b"HTTP/1.1 200 ")
+
+
+def test_answers_are_sent_without_delay(empty: Path) -> None:
+    with served(empty, "--http", "0") as (url, _), httpx2.Client() as client:
+        times = []
+        for _ in range(15):
+            begin = time.monotonic()
+            assert client.post(url, content=b"{}", headers=HEADERS).status_code == 400
+            times.append(time.monotonic() - begin)
+    assert min(times) < 0.03  # the system delays acknowledgements by 40 ms, for which an answer in two parts would wait
+
+
+@pytest.mark.anyio
+async def test_a_worker_that_cannot_be_started_is_said(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    said = "worker-failed: the process that does the work could not be started: No such file or directory"
+    async with Caller(build_server(workspace)) as client:
+        with monkeypatch.context() as patch:
+            patch.setattr(worker, "_command", lambda: ["/nowhere/python"])
+            assert (await client.error("lookup", topic="dash")).startswith(said)
+            assert (await client.error("run_episode", scenario_yaml=ROOM)).startswith(said)
+            assert said in str(await client.call("benchmark", scenarios=[ROOM], seeds=1))
+        assert not (await client.call("lookup", topic="dash")).is_error
 
 
 @pytest.mark.anyio

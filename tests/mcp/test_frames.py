@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import json
 import os
+import random
 import subprocess
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import anyio
 import httpx2
 import pytest
+from starlette.responses import PlainTextResponse
 
+from irsim_mcp.bodies import WholeMessages
 from irsim_mcp.frames import MAX_FRAME, BadFrame, frame
 from tests.mcp.conftest import HANDSHAKE
 from tests.mcp.test_http import HEADERS, served
@@ -118,6 +123,70 @@ def test_every_one_is_answered_over_http(empty: Path) -> None:
                 assert answer.status_code == 400, name
                 check(answer.json(), code, known)
         assert client.post(url, content=request(8), headers=HEADERS | session).status_code == 200
+
+
+@pytest.mark.anyio
+async def test_an_id_in_use_is_refused_over_http() -> None:
+    answered = anyio.Event()
+
+    async def app(scope: Any, receive: Any, send: Any) -> None:
+        await answered.wait()
+        await PlainTextResponse("answer")(scope, receive, send)
+
+    statuses: dict[str, list[int]] = {"a": [], "b": []}
+    transport = httpx2.ASGITransport(app=WholeMessages(app))
+    async with httpx2.AsyncClient(transport=transport) as client, anyio.create_task_group() as tasks:
+
+        async def ask(session: str, number: object) -> None:
+            answer = await client.post("http://x/", content=request(number), headers={"Mcp-Session-Id": session})
+            statuses[session].append(answer.status_code)
+
+        for session, number in (("a", 5), ("a", "5"), ("b", 5), ("a", 6)):  # the SDK takes 5 and "5" for the same
+            tasks.start_soon(ask, session, number)
+        await anyio.wait_all_tasks_blocked()
+        assert statuses == {"a": [400], "b": []}
+        answered.set()
+    assert statuses == {"a": [400, 200, 200], "b": [200]}
+
+
+DAMAGED = [
+    request(7, "tools/call", name="lookup", arguments={"topic": 'é \U0001f600 "id": 3'}),
+    b'{"id":"a","params":{"x":[1,-2.5e3,null,true,{"id":4}]},"method":"ping","jsonrpc":"2.0"}',
+    b'{"jsonrpc":"2.0","id":3,"error":{"code":-1,"message":"no"}}',
+]
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_damaged_messages_are_read_or_refused(seed: int) -> None:
+    rng = random.Random(seed)
+    for text in DAMAGED * 20:
+        data = bytearray(text)
+        for _ in range(rng.randint(1, 4)):
+            place = rng.randrange(len(data))
+            data[place : place + rng.randint(0, 3)] = rng.choice(
+                [
+                    b"",
+                    b"\xff",
+                    b"\0",
+                    b"[",
+                    b"}",
+                    b'"',
+                    b"\\",
+                    b"\\ud83d",
+                    b"9" * 400,
+                    b"id",
+                    bytes([rng.randrange(256)]),
+                ]
+            )
+        with suppress(BadFrame):
+            assert frame(bytes(data)).jsonrpc == "2.0"
+            continue
+        with pytest.raises(BadFrame) as bad:
+            frame(bytes(data))
+        answer = json.loads(bad.value.answer())
+        assert answer["error"]["code"] in (PARSE, INVALID)
+        assert isinstance(answer["id"], str | int | None)
+        assert b"\n" not in bad.value.answer()
 
 
 def test_a_long_line_is_refused_and_the_next_one_read(started: subprocess.Popen[bytes]) -> None:
