@@ -19,7 +19,7 @@ from irsim.cli.benchmark_run import Wanted, run_benchmark
 from irsim.cli.findings import import_user_modules
 from irsim.cli.options import Imports, Json, MaxObjects, Perturb, Steps, Strict
 from irsim.cli.output import console, print_json
-from irsim.common.text import clean
+from irsim.common.text import cell, clean
 from irsim.diagnostics.errors import InputError
 from irsim.results.benchmark import seeds_of
 
@@ -318,11 +318,12 @@ def _print_csv(result: BenchmarkResult) -> None:
     varied = list(dict.fromkeys(key for fact in facts.values() for key in fact.values))
     suite = ("policy", "family", "protocol", *(f"values.{key}" for key in varied)) if facts else ()
     lines = csv.writer(sys.stdout, lineterminator="\n")
-    lines.writerow([*first, *suite, *KEYS])
+    lines.writerow([*first, *map(cell, suite), *KEYS])
     for episode in result.episodes:
         values: list[Any] = [getattr(episode, key) for key in first]
         if fact := facts.get(episode.scenario):
             values += [names[episode.behavior], fact.family, fact.protocol]
             given = [fact.values.get(key) for key in varied]
             values += [json.dumps(value) if isinstance(value, (dict, list)) else value for value in given]
+        values = [cell(value) if isinstance(value, str) else value for value in values]
         lines.writerow(["" if v is None else v for v in (*values, *(episode.metrics[key] for key in KEYS))])

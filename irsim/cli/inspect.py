@@ -12,7 +12,7 @@ from rich.table import Table
 
 from irsim.cli.options import Json
 from irsim.cli.output import console, print_json
-from irsim.common.text import clean
+from irsim.common.text import cell, clean
 from irsim.results.benchmark import ending
 from irsim.runs import list_runs
 from irsim.runs.files import RunError
@@ -147,9 +147,9 @@ def _list_runs() -> None:
 def _print_csv(table: RunTable) -> None:
 
     writer = csv_writer(sys.stdout, lineterminator="\n")
-    writer.writerow(table.columns)
+    writer.writerow([cell(name) for name in table.columns])
     for row in table.rows:
-        writer.writerow([clean(cell, MAX_CSV_TEXT_LENGTH) if isinstance(cell, str) else cell for cell in row])
+        writer.writerow([cell(clean(v, MAX_CSV_TEXT_LENGTH)) if isinstance(v, str) else v for v in row])
 
 
 def _show(table: RunTable, out: object) -> None:

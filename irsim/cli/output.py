@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TextIO
 
+from irsim.common.text import escape_marks
+
 if TYPE_CHECKING:
     from pydantic import BaseModel
     from rich.console import Console
@@ -33,10 +35,20 @@ _LINE_PERIOD_S = 30.0
 
 
 def prepare_streams() -> None:
-    """Make printing safe: characters that the encoding of the terminal lacks are escaped instead of raising errors."""
+    """Make printing safe: characters that the encoding of the terminal lacks, or that mislead readers, are escaped."""
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError, ValueError):
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+            stream.write = _escaping(stream.write)  # type: ignore[method-assign]
+
+
+def _escaping(write: Callable[[str], int]) -> Callable[[str], int]:
+    """A ``write`` that escapes marks which could mislead a reader, as JSON does."""
+
+    def escaped(text: str) -> int:
+        return write(text if text.isascii() else escape_marks(text))
+
+    return escaped
 
 
 def console(*, stderr: bool = False) -> Console:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 __all__ = [
+    "cell",
     "clean",
+    "escape_marks",
     "listed",
+    "markdown_code",
+    "markdown_text",
     "metres",
     "names_if_different",
     "plural",
@@ -116,6 +121,43 @@ def clean(text: object, longest: int = 80) -> str:
     """
     shown = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in str(text))
     return shown if len(shown) <= longest else shown[: longest - 3] + "..."
+
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""Beginnings of cells that spreadsheets run as formulas."""
+_MARKDOWN = {ord(mark): f"&#{ord(mark)};" for mark in "<>&|`"}
+"""Marks of HTML, tables and code in Markdown as character references."""
+
+
+_MARKS = {
+    code: f"\\u{code:04x}"
+    for code in (*range(0x80, 0xA0), 0x61C, 0x200E, 0x200F, *range(0x2028, 0x202F), *range(0x2066, 0x206A), 0xFEFF)
+}
+"""Control characters above ASCII and marks that change the direction of text, as JSON escapes them."""
+
+
+def escape_marks(text: str) -> str:
+    """A text of any length with such marks escaped; JSON stays JSON of the same value."""
+    return text.translate(_MARKS)
+
+
+def cell(text: str) -> str:
+    """A name as a cell of a table of text that a spreadsheet may open: it is never a formula."""
+    return f"'{text}" if text.startswith(_FORMULA) else text
+
+
+def markdown_text(text: object) -> str:
+    """A text as one line of Markdown that shows just this text: no HTML, no table, no code, no link."""
+    shown = clean(text, 10**6).translate(_MARKDOWN)
+    return shown.replace("](", "&#93;(").replace("][", "&#93;[")
+
+
+def markdown_code(text: object) -> str:
+    """A text as code in Markdown; its own backticks do not end it."""
+    shown = clean(text, 10**6)
+    fence = "`" * (1 + max(map(len, re.findall("`+", shown)), default=0))
+    space = " " * (len(fence) > 1)
+    return f"{fence}{space}{shown}{space}{fence}"
 
 
 def quoted(name: object, longest: int = MAX_NAME) -> str:

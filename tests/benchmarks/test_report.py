@@ -14,6 +14,7 @@ from irsim.api.benchmark_report import MARKDOWN, PAGE, REPLAYS, write_report
 from irsim.benchmarks.comparison import benchmark
 from irsim.benchmarks.report.charts import charts
 from irsim.benchmarks.report.markdown import markdown
+from irsim.benchmarks.report.page import page
 from irsim.benchmarks.stored import RESULTS, run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.app import app
@@ -198,6 +199,22 @@ def test_times_beside_failures_are_those_of_robots_that_arrived() -> None:
         told[name] = CliRunner().invoke(app, ["benchmark", f"{name}.yaml"]).stdout
     assert "time: of the robots that arrived, in any episode" in told["one"]
     assert "of the robots that arrived" not in told["all"]
+
+
+NAMES = ("$\\frac{$ <img src=x onerror=alert(1)>", "=1+1 \u202e](http://evil)")
+
+
+def test_names_are_text_in_charts_tables_and_pages(tmp_path: Path) -> None:
+    file = tmp_path / "scene.yaml"
+    file.write_text(ARRIVES, encoding="utf-8")
+    result = benchmark(dict.fromkeys(NAMES, file), behaviors=["dash", "orca"], seeds=2, workers=1)
+    assert sum("$" in svg for _, svg in charts(result)) == 1
+    report = markdown(result).partition("Reproduce: `")[0]  # what follows is code
+    for shown in (report, page(result)):
+        assert "<img" not in shown
+        assert "\u202e" not in shown
+    assert "](http" not in report
+    assert "Content-Security-Policy" in page(result)
 
 
 ROBOT = "{kinematics: {name: diff}, state: [1, 1, 0], goal: [3, 2, 0], behavior: {name: dash}%s}"

@@ -34,6 +34,13 @@ def test_the_simulation_is_the_flat_one(make: Make) -> None:
     assert (space._world.depth, space._world.z_range) == (3.0, [0.0, 3.0])
 
 
+def test_dollars_in_names_and_titles_are_no_formulas(make: Make) -> None:
+    named = YAML.replace("{kinematics:", "{name: '$\\frac{$', kinematics:")
+    env = make(named, projection="3d", headless=False, display=False)
+    env.set_title("costs $\\x$")
+    env.render(0)
+
+
 def test_pictures_and_drawings(make: Make, tmp_path: Path) -> None:
     env = make(YAML, projection="3d", headless=False, display=False)
     env.path_param.fig_path = str(tmp_path)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from irsim.benchmarks.report.rows import families, policy_labels, protocols, series
 from irsim.benchmarks.summary import is_summary
+from irsim.common.text import escape_marks
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow
 
 if TYPE_CHECKING:
@@ -50,13 +51,20 @@ def _drawn(draw: Any) -> str:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context({"svg.hashsalt": "irsim", "svg.fonttype": "none", "font.size": 9}):
+    # names are text, never formulas between dollar signs
+    settings: dict[Any, Any] = {
+        "svg.hashsalt": "irsim",
+        "svg.fonttype": "none",
+        "font.size": 9,
+        "text.parse_math": False,
+    }
+    with matplotlib.rc_context(settings):
         figure = Figure(figsize=(6.4, 3.4), layout="constrained")
         FigureCanvasSVG(figure)
         draw(figure.add_subplot())
         target = io.StringIO()
         figure.savefig(target, format="svg", metadata={"Date": None, "Creator": None}, transparent=True)
-    text = target.getvalue()
+    text = escape_marks(target.getvalue())
     return text[text.index("<svg") :]
 
 

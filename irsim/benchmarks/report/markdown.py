@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from irsim.benchmarks.report.rows import policy_labels
+from irsim.common.text import markdown_code, markdown_text
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion, SuiteResult
 
 __all__ = [
@@ -54,26 +55,27 @@ def markdown(result: BenchmarkResult, notes: Sequence[str] = ()) -> str:
         notes: Notes on the report itself.
     """
     labels, columns = policy_labels(result), columns_of(result)
-    lines = [f"# {title_of(result)}", "", *(f"{line}  " for line in facts_of(result)), ""]
+    lines = [f"# {markdown_text(title_of(result))}", "", *(f"{markdown_text(line)}  " for line in facts_of(result)), ""]
     for line in about_of(result):
-        lines += [line, ""]
+        lines += [markdown_text(line), ""]
     rows = [[row.scenario, labels[row.behavior], str(row.episodes), *cells_of(row, columns)] for row in result.rows]
     lines += _table((["scenario", "policy", "n", *(heading for _, heading in columns)], rows))
     if zones := zones_of(result):
         lines += ["", "Zones, means over the robots:", "", *_table(zones)]
     if differences := differences_of(result):
-        first = labels[result.behaviors[0]]
+        first = markdown_text(labels[result.behaviors[0]])
         lines += ["", f"Differences to {first} with the same seeds:", "", *_table(differences)]
-    lines += ["", "Policies:", "", *(f"- {label}: `{text}`" for text, label in labels.items())]
-    lines += ["", *(f"Note: {note}  " for note in (*result.notes, *notes))]
-    lines += ["", INTERVALS, "", f"Reproduce: `{result.reproduce}` with irsim {result.version}"]
+    lines += ["", "Policies:", ""]
+    lines += [f"- {markdown_text(label)}: {markdown_code(text)}" for text, label in labels.items()]
+    lines += ["", *(f"Note: {markdown_text(note)}  " for note in (*result.notes, *notes))]
+    lines += ["", INTERVALS, "", f"Reproduce: {markdown_code(result.reproduce)} with irsim {result.version}"]
     return "\n".join(lines) + "\n"
 
 
 def _table(table: Table) -> list[str]:
     """The lines of a table."""
     headings, rows = table
-    cells = [[cell.replace("|", "\\|") for cell in row] for row in (headings, *rows)]
+    cells = [[markdown_text(cell) for cell in row] for row in (headings, *rows)]
     first, *others = [f"| {' | '.join(row)} |" for row in cells]
     return [first, "|---" * len(headings) + "|", *others]
 

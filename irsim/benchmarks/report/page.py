@@ -20,6 +20,7 @@ from irsim.benchmarks.report.markdown import (
     zones_of,
 )
 from irsim.benchmarks.report.rows import policy_labels
+from irsim.common.text import clean
 from irsim.results.benchmark import BenchmarkResult
 
 __all__ = ["Shown", "page"]
@@ -43,28 +44,33 @@ class Shown:
 def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[str] = ()) -> str:
     """The page: facts, tables, charts, worst episodes, notes, and how to run it again."""
     labels, columns = policy_labels(result), columns_of(result)
-    title = escape(title_of(result))
+    title = _shown(title_of(result))
     rows = [[row.scenario, labels[row.behavior], str(row.episodes), *cells_of(row, columns)] for row in result.rows]
     main = (["scenario", "policy", "n", *(heading for _, heading in columns)], rows)
     zones, differences = zones_of(result), differences_of(result)
     failed = sum(one.outcome in ("collision", "timeout") for one in result.episodes)
-    figures = [f"<figure>{svg}<figcaption>{escape(caption)}</figcaption></figure>" for caption, svg in charts(result)]
+    figures = [f"<figure>{svg}<figcaption>{_shown(caption)}</figcaption></figure>" for caption, svg in charts(result)]
     worst = [_episode(one) for one in shown]
     parts = [
-        f"<h1>{title}</h1>", *(f"<p>{escape(line)}</p>" for line in facts_of(result)),
-        *(f"<p>{escape(line)}</p>" for line in about_of(result)),
-        _table(main), f'<p class="small">{escape(INTERVALS)}</p>',
+        f"<h1>{title}</h1>", *(f"<p>{_shown(line)}</p>" for line in facts_of(result)),
+        *(f"<p>{_shown(line)}</p>" for line in about_of(result)),
+        _table(main), f'<p class="small">{_shown(INTERVALS)}</p>',
         "<h2>Zones</h2><p>Means over the robots.</p>" + _table(zones) if zones else "",
-        f"<h2>Differences to {escape(labels[result.behaviors[0]])} with the same seeds</h2>" + _table(differences)
+        f"<h2>Differences to {_shown(labels[result.behaviors[0]])} with the same seeds</h2>" + _table(differences)
         if differences else "",
         "<h2>Policies</h2>", "<ul>",
-        *(f"<li>{escape(label)}: <code>{escape(text)}</code></li>" for text, label in labels.items()), "</ul>",
-        *(f'<p class="note">{escape(note)}</p>' for note in (*result.notes, *notes)),
+        *(f"<li>{_shown(label)}: <code>{_shown(text)}</code></li>" for text, label in labels.items()), "</ul>",
+        *(f'<p class="note">{_shown(note)}</p>' for note in (*result.notes, *notes)),
         "<h2>Charts</h2>" if figures else "", f'<div class="charts">{"".join(figures)}</div>',
         f"<h2>Episodes that failed</h2><p>{len(worst)} of {failed:,} are shown.</p>" if worst else "", *worst,
-        "<h2>Run it again</h2>", f"<pre>{escape(result.reproduce)}</pre><p>irsim {escape(result.version)}</p>",
+        "<h2>Run it again</h2>", f"<pre>{_shown(result.reproduce)}</pre><p>irsim {_shown(result.version)}</p>",
     ]  # fmt: skip
     return _SHELL.format(title=title, body="\n".join(filter(None, parts)))
+
+
+def _shown(text: str) -> str:
+    """A text of the result as HTML, without marks that change the direction of the text around it."""
+    return escape(clean(text, 10**6))
 
 
 def _table(table: Table) -> str:
@@ -74,21 +80,23 @@ def _table(table: Table) -> str:
     for name, *cells in rows:
         mark = ' class="first"' if name != last else ""
         shown = [name if name != last else "", *cells]
-        lines.append(f"<tr{mark}>" + "".join(f"<td>{escape(cell)}</td>" for cell in shown) + "</tr>")
+        lines.append(f"<tr{mark}>" + "".join(f"<td>{_shown(cell)}</td>" for cell in shown) + "</tr>")
         last = name
-    head = "".join(f"<th>{escape(text)}</th>" for text in headings)
+    head = "".join(f"<th>{_shown(text)}</th>" for text in headings)
     return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
 
 
 def _episode(one: Shown) -> str:
-    picture = f'<img alt="{escape(one.caption)}" src="data:image/png;base64,{base64.b64encode(one.png).decode()}">'
-    link = f'<a href="{escape(one.replay)}">{picture}</a>' if one.replay else picture
-    more = f' <a href="{escape(one.replay)}">replay</a>' if one.replay else ""
-    return f'<figure class="episode">{link}<figcaption>{escape(one.caption)}{more}</figcaption></figure>'
+    picture = f'<img alt="{_shown(one.caption)}" src="data:image/png;base64,{base64.b64encode(one.png).decode()}">'
+    link = f'<a href="{_shown(one.replay)}">{picture}</a>' if one.replay else picture
+    more = f' <a href="{_shown(one.replay)}">replay</a>' if one.replay else ""
+    return f'<figure class="episode">{link}<figcaption>{_shown(one.caption)}{more}</figcaption></figure>'
 
 
 _SHELL = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<html lang="en"><head><meta charset="utf-8"><meta http-equiv="Content-Security-Policy"
+content="default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src 'unsafe-inline'">
+<meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
 <style>
 :root {{ color-scheme: light dark; --line: #ccc; --soft: #666; --back: #fff; --text: #111; }}

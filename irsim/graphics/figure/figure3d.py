@@ -70,7 +70,7 @@ class SceneFigure3D:
         self._artists = [self._mark(mark) for mark in marks]
         self._artists += [self._beams(beams) for beams in scene.beams if len(beams.ends)]
         self._artists += [self._label(label) for label in scene.labels]
-        self.ax.set_title(title or "")
+        self.ax.set_title(title or "", parse_math=False)
 
     def _look_at(self, extent: tuple[float, float, float, float]) -> None:
         self._extent = extent
@@ -102,7 +102,7 @@ class SceneFigure3D:
         return self.ax.add_collection3d(Line3DCollection(np.stack([start, ends], axis=1), colors=[color]))
 
     def _label(self, label: Label) -> Any:
-        return self.ax.text(label.x, label.y, 0.0, label.text, color=label.color, fontsize=label.size)
+        return self.ax.text(label.x, label.y, 0.0, label.text, color=label.color, fontsize=label.size, parse_math=False)
 
     def draw(self) -> None:
         """Draw into the canvas."""

@@ -7,10 +7,12 @@ import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from irsim.common.extras import require
 from irsim.common.files import check_suffix, replace_bytes, write_atomically
 from irsim.common.installed import version
+from irsim.common.text import markdown_code, markdown_text
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.draws import observed_names
 from irsim.learning.tasks.files import open_task
@@ -204,10 +206,11 @@ def _card_text(file: Path, task: Task, card: Mapping[str, Any]) -> str:
         "licence": card["license"] or "not said",
         "SHA-256": hashlib.sha256(file.read_bytes()).hexdigest(),
     }
-    table = "\n".join(f"| {key} | {value} |" for key, value in rows.items())
-    use = f"Use it: `irsim run SCENARIO --policy {file.name}`"
-    curve = f"![learning curve]({file.stem}.png)"
-    return f"# {file.stem}\n\n{card['description']}\n\n| | |\n|---|---|\n{table}\n\n{use}\n\n{curve}\n"
+    table = "\n".join(f"| {key} | {markdown_text(value)} |" for key, value in rows.items())
+    use = f"Use it: {markdown_code(f'irsim run SCENARIO --policy {file.name}')}"
+    curve = f"![learning curve]({quote(file.stem)}.png)"
+    head = f"# {markdown_text(file.stem)}\n\n{markdown_text(card['description'])}"
+    return f"{head}\n\n| | |\n|---|---|\n{table}\n\n{use}\n\n{curve}\n"
 
 
 def draw_curve(rounds: Sequence[Mapping[str, Any]], title: str, file: Path) -> None:
@@ -231,7 +234,8 @@ def draw_curve(rounds: Sequence[Mapping[str, Any]], title: str, file: Path) -> N
         if key == "worlds" and all(one["worlds"] == one["learners"] for one in rounds):
             continue
         axes.plot(decisions, [100 * one[key] for one in rounds], color=color, label=label, marker=".", markersize=4)
-    axes.set(xlabel="decisions [million]", ylabel="on validation seeds [%]", ylim=(-2, 102), title=title)
+    axes.set(xlabel="decisions [million]", ylabel="on validation seeds [%]", ylim=(-2, 102))
+    axes.set_title(title, parse_math=False)
     axes.grid(alpha=0.3)
     axes.legend(loc="center right", fontsize="small")
     content = io.BytesIO()

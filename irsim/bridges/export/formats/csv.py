@@ -1,7 +1,8 @@
 """``csv``: the table of the format ``parquet`` as text, which needs no library; without metadata.
 
 Numbers read back exactly, empty cells stand for missing values, and flags are 0 and 1. Ranges are left out unless asked
-for; a scan is then one cell, its ranges separated by spaces.
+for; a scan is then one cell, its ranges separated by spaces. A name that a spreadsheet would run as a formula,
+because it begins with ``=``, ``+``, ``-`` or ``@``, has an apostrophe before it.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 from irsim.bridges.export.columns import Cells, Ranges, Words, columns_of, table_parts
 from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
+from irsim.common.text import cell
 
 __all__ = ["FORMAT"]
 
@@ -24,7 +26,7 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     columns = columns_of(episodes)
     with open(target, "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([column.name for column in columns])
+        writer.writerow([cell(column.name) for column in columns])
         for episode in episodes:
             for cells in table_parts(episode, columns):
                 writer.writerows(zip(*(_texts(cells[column.name]) for column in columns), strict=True))
@@ -34,7 +36,8 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
 def _texts(cells: Cells) -> list[str]:
     """Cells as text."""
     if isinstance(cells, Words):
-        return [cells.words[index] for index in cells.index.tolist()]
+        words = [cell(word) for word in cells.words]
+        return [words[index] for index in cells.index.tolist()]
     if isinstance(cells, Ranges):
         texts, begin = [], 0
         for length in cells.lengths.tolist():
