@@ -19,7 +19,7 @@ from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.report.page import Shown, page
 from irsim.benchmarks.report.rows import policy_labels, worst_episodes
 from irsim.benchmarks.report.table import MISSING, TABLE, has_tables, write_table
-from irsim.benchmarks.stored import PLAN
+from irsim.benchmarks.stored import read_plan
 from irsim.common.files import write_atomically
 from irsim.diagnostics.errors import ScenarioError
 from irsim.runs.files import RunError
@@ -65,7 +65,7 @@ def write_report(result: BenchmarkResult, folder: Path) -> Report:
         RunError: The folder cannot be written.
     """
     notes = [] if has_tables() else [MISSING]
-    plan = Plan.model_validate_json((folder / PLAN).read_bytes())
+    plan = read_plan(folder)
     scenarios = {scenario.name: scenario for scenario in plan.scenarios}
     try:
         shown = [_shown(plan, scenarios[one.scenario], one, result, folder) for one in worst_episodes(result)]

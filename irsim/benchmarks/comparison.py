@@ -18,7 +18,7 @@ from typing import Any
 from irsim.benchmarks.assumptions import Limit, assumptions_of, limits_of, unequal_note
 from irsim.benchmarks.cluster import run_on_cluster
 from irsim.benchmarks.episode import Job, Task, Until, check_policy, scenario_of
-from irsim.benchmarks.log import Log, logged, with_episodes
+from irsim.benchmarks.log import Log, check_places, logged, with_episodes
 from irsim.benchmarks.policies import (
     chances_that_count,
     digests_of,
@@ -225,6 +225,7 @@ def benchmark(
         return EpisodeRow(scenario=name, behavior=behavior, seed=task.seed, metrics=metrics, **copied)
 
     known = dict(Log.known(log, head)) if log is not None and resume else {}
+    check_places(known, [(name, behavior, task.seed) for name, behavior, task in plan])
     with nullcontext() if log is None else Log(log, head, known) as book:
 
         def keep(number: int, result: Mapping[str, Any]) -> None:

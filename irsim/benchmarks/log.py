@@ -20,7 +20,7 @@ from irsim.episodes.opening import UNOPENED
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.runs.files import RunError, refusal, unreadable
 
-__all__ = ["Log", "in_order", "logged", "with_episodes"]
+__all__ = ["Log", "check_places", "in_order", "logged", "with_episodes"]
 
 _FLAGS = os.O_WRONLY | os.O_APPEND | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
 
@@ -110,6 +110,17 @@ def logged(file: str | Path) -> BenchmarkResult:
         return with_episodes(head, [episodes[number] for number in sorted(episodes)])
     except (LookupError, ArithmeticError):
         raise unreadable(f"the first line of {str(file)!r} has been changed") from None
+
+
+def check_places(known: Mapping[int, EpisodeRow], plan: Sequence[tuple[str, str, int]]) -> None:
+    """Check that each known episode has the scenario, behavior and seed that its place in the order has.
+
+    Raises:
+        RunError: One has others.
+    """
+    for number, one in known.items():
+        if not 0 <= number < len(plan) or (one.scenario, one.behavior, one.seed) != plan[number]:
+            raise unreadable(f"episode {number} of the log is not one of this benchmark: it has seed {one.seed}")
 
 
 def in_order(file: str | Path, episodes: Sequence[EpisodeRow]) -> str:

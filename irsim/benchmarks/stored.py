@@ -235,7 +235,7 @@ def _prepare(plan: Plan, folder: Path, resume: bool) -> None:
     text, known = plan.model_dump_json(indent=1) + "\n", folder / PLAN
     if not resume and _has_episodes(folder / EPISODES):
         raise RunError("results-exist", f"{folder} holds episodes already", "give --resume, or another folder with -o")
-    if known.exists() and known.read_text(encoding="utf-8") != text:
+    if known.exists() and (not known.is_file() or known.read_bytes() != text.encode()):
         raise RunError("other-benchmark", f"{folder} holds another benchmark", "give another folder with -o")
     if not known.exists():
         _write(known, text)

@@ -253,14 +253,13 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
 def _logged(job: dict[str, Any], progress: _Progress) -> str:
     """Write the result of the episodes that a stopped benchmark had completed, beside its log."""
     from irsim.benchmarks import logged
-    from irsim.benchmarks.plan import Plan
-    from irsim.benchmarks.stored import PLAN, result_of_plan
+    from irsim.benchmarks.stored import PLAN, read_plan, result_of_plan
     from irsim.runs.files import replace_file
 
     log = Path(job["arguments"]["log"])
     result = logged(log)
-    if (plan := log.with_name(PLAN)).is_file():  # of a suite, which names scenarios and policies
-        result = result_of_plan(Plan.model_validate_json(plan.read_bytes()), result)
+    if log.with_name(PLAN).is_file():  # of a suite, which names scenarios and policies
+        result = result_of_plan(read_plan(log.parent), result)
     replace_file(job["arguments"]["to"], result.model_dump_json().encode())
     return "null"
 

@@ -20,7 +20,7 @@ from irsim.learning.tasks.scene import task_scenario
 from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.team import team_of
 from irsim.learning.training.extractor import GruExtractor, PartColumns, columns_of
-from irsim.learning.training.run_folder import RunFolder, merit
+from irsim.learning.training.run_folder import RunFolder, loading, merit
 from irsim.learning.training.settings import SarlSettings
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks.document import PolicyDocument
@@ -90,7 +90,9 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
     if isinstance(settings, SarlSettings):
         network = sarl_network_of(run.best, file, settings, card)
     else:
-        network = network_of(PPO.load(run.best, device="cpu").policy, file, card)
+        with loading(run.best):
+            model = PPO.load(run.best, device="cpu")
+        network = network_of(model.policy, file, card)
     if target.suffix == ".onnx":
         from irsim.policies.networks.onnx.writing import save_onnx  # of another extra
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from pydantic import ValidationError
 
 from irsim.common.files import replacing, write_atomically
 from irsim.common.records import ContentError, read_json_lines
+from irsim.common.text import clean
 from irsim.common.yaml.plain import read_plain_yaml
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.scene import scenario_text
@@ -122,6 +124,20 @@ class RunFolder:
                 model.save(file)
         lines = [json.dumps(one) for one in [*self.rounds(), facts]]
         write_atomically(self._progress, "\n".join(lines) + "\n")
+
+
+@contextmanager
+def loading(file: Path) -> Iterator[None]:
+    """Turn whatever a library raises about the file of a model into an error of the folder.
+
+    Raises:
+        ArgumentError: The file is missing or damaged.
+    """
+    try:
+        yield
+    except Exception as error:
+        lines = str(error).splitlines()
+        raise _damaged(file, clean(lines[0] if lines else type(error).__name__, 200)) from error
 
 
 def _damaged(file: Path, problem: str) -> ArgumentError:

@@ -23,7 +23,7 @@ from irsim.learning.sb3_env import SB3VecEnv
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.tasks.task import Task
 from irsim.learning.training.extractor import READERS, columns_of
-from irsim.learning.training.run_folder import RunFolder, merit
+from irsim.learning.training.run_folder import RunFolder, loading, merit
 from irsim.learning.training.settings import TrainingSettings
 from irsim.learning.training.success import Round, measure_success
 from irsim.learning.worlds import Worlds
@@ -131,7 +131,11 @@ def _run_rounds(
     done = run.rounds()
     with warnings.catch_warnings():  # minibatches are of nearly equal sizes, whatever their number
         warnings.filterwarnings("ignore", message=".*mini-batch size.*")
-        model = _model(env, opened, settings) if not done else PPO.load(run.latest, env, device="cpu")
+        if not done:
+            model = _model(env, opened, settings)
+        else:
+            with loading(run.latest):
+                model = PPO.load(run.latest, env, device="cpu")
     model.set_logger(configure(str(run.path / "tensorboard"), ["tensorboard"]))
     per_round = settings.rollout * env.num_envs * settings.round_updates
     rounds = max(1, -(-settings.steps // per_round))

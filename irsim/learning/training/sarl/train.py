@@ -21,7 +21,7 @@ from irsim.common.arrays import Floats
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.files import TaskSource, open_task
-from irsim.learning.training.run_folder import RunFolder, merit
+from irsim.learning.training.run_folder import RunFolder, loading, merit
 from irsim.learning.training.sarl.play import Driver, Experience, Memory, play
 from irsim.learning.training.sarl.task import Plan, plan_of
 from irsim.learning.training.settings import SarlSettings
@@ -110,7 +110,10 @@ class _Model:
 
     def load(self, file: Path) -> None:
         """Read what :meth:`save` has written."""
-        stored = torch.load(file, weights_only=True)
+        with loading(file):
+            self._load(torch.load(file, weights_only=True))
+
+    def _load(self, stored: dict[str, Any]) -> None:
         self.net.load_state_dict(stored["net"])
         self.target.load_state_dict(stored["target"])
         self.optimizer.load_state_dict(stored["optimizer"])
@@ -271,7 +274,8 @@ def sarl_network_of(file: Path, source: Any, settings: SarlSettings, card: dict[
     """
     task, _ = open_task(source)
     plan = plan_of(task, settings)
-    weights = {name: x.numpy() for name, x in torch.load(file, weights_only=True)["net"].items()}
+    with loading(file):
+        weights = {name: x.numpy() for name, x in torch.load(file, weights_only=True)["net"].items()}
     ahead = plan.lookahead.model_dump(mode="json")
     return sarl_network(
         weights, lookahead=ahead, neighbors=plan.people, range=plan.range, heading=plan.heading,
