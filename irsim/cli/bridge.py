@@ -126,7 +126,7 @@ def _mount(text: str | None) -> tuple[float, float, float] | None:
 def export_scene(
     scenario: Annotated[Path, typer.Argument(metavar="FILE", help="Scenario; it is not run.")],
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="File to write: .usda, .usdc or .usdz.")],
-    seed: Annotated[int, typer.Option(min=0, help="Seed of what is drawn at random.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, max=2**64 - 1, help="Seed of what is drawn at random.")] = 0,
     force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
 ) -> None:
     """Write the start of a scenario as a stage of OpenUSD. For a whole run, see `irsim export --to usd`."""

@@ -26,7 +26,7 @@ def demo(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Animation file to write.")] = Path(
         "irsim-demo.gif"
     ),
-    seed: Annotated[int, typer.Option(min=0, help="Random seed.")] = _SEED,
+    seed: Annotated[int, typer.Option(min=0, max=2**64 - 1, help="Random seed.")] = _SEED,
     json_output: Json = False,
 ) -> None:
     """Simulate a bundled scenario and write an animation of it to the current directory."""

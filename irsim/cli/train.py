@@ -59,7 +59,8 @@ def train(
         typer.Option("--max-time", min=0, metavar="SECONDS", help="Begin no further round after this wall-clock time."),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option("--seed", min=0, help="Seed of weights, exploration and samples. Default: 0.")
+        int | None,
+        typer.Option("--seed", min=0, max=2**32 - 1, help="Seed of weights, exploration and samples. Default: 0."),
     ] = None,
     stop_at: Annotated[
         float | None,

@@ -68,10 +68,11 @@ def motion_metrics(track: Track) -> dict[str, float]:
 
 
 def _effort(track: Track) -> float:
-    bounded = np.isfinite(track.limits) & (track.limits > 0)
+    limits = track.limits[: track.control.shape[1]]  # `vel_dim` may name more controls than the drive has
+    bounded = np.isfinite(limits) & (limits > 0)
     if not bounded.any():
         return float("nan")
-    shares = track.control[:, bounded] / track.limits[bounded]
+    shares = track.control[:, bounded] / limits[bounded]
     return float((shares**2).sum() * track.step_time)
 
 

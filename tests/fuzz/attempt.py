@@ -16,15 +16,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import irsim
+from irsim.api import snapshot
 from irsim.common.child import limit
 from irsim.diagnostics.errors import IrsimError, PlacementError, ScenarioError
 from irsim_evals.grader.limited import LimitError, run_all
 from irsim_mcp.limits import ServerLimits, scenario_limits
 
-__all__ = ["Tally", "Wrong", "try_all"]
+__all__ = ["How", "Tally", "Wrong", "try_all"]
+
+How = Literal["run", "render", "benchmark"]
+"""What is done with a document that validates."""
 
 _SECONDS = 10.0
 """Processor time of one document: twice what the worst ones take, because machines differ, and their days do, too."""
@@ -55,17 +59,18 @@ class Tally:
     slowest: tuple[float, int] = (0.0, -1)
 
 
-def try_all(documents: Iterable[tuple[int, str]], *, workers: int = 2) -> Tally:
-    """Load, validate and run documents.
+def try_all(documents: Iterable[tuple[int, str]], *, workers: int = 2, how: How = "run") -> Tally:
+    """Load, validate and run (or draw, or compare) documents.
 
     Args:
         documents: (number, text).
         workers: Processes at a time.
+        how: What is done with each.
     """
     tally, rest = Tally(), iter(documents)
     with tempfile.TemporaryDirectory() as folder:
         while batch := list(islice(rest, _RENEWED)):
-            results = run_all(_limited, [(text, folder) for _, text in batch], workers, _PATIENCE, "document")
+            results = run_all(_limited, [(text, folder, how) for _, text in batch], workers, _PATIENCE, "document")
             for (index, text), result in zip(batch, results, strict=True):
                 came_to, wrong, seconds = ("died", str(result), 0.0) if isinstance(result, LimitError) else result
                 tally.came_to[came_to] += 1
@@ -75,26 +80,26 @@ def try_all(documents: Iterable[tuple[int, str]], *, workers: int = 2) -> Tally:
     return tally
 
 
-def _limited(text: str, folder: str) -> tuple[str, str | None, float]:
+def _limited(text: str, folder: str, how: How) -> tuple[str, str | None, float]:
     """Try a document in the limited process: its result, what is wrong with it, and the processor time [s]."""
     os.chdir(folder)
     limit(memory=_MEMORY)
     warnings.simplefilter("error")
     signal.setitimer(signal.ITIMER_PROF, _SECONDS)  # no handler: the system ends the process, wherever it is
     begin = time.process_time()
-    came_to, wrong = _attempt(text, scenario_limits(ServerLimits(), Path(folder)))
+    came_to, wrong = _attempt(text, scenario_limits(ServerLimits(), Path(folder)), how)
     signal.setitimer(signal.ITIMER_PROF, 0.0)
     return came_to, wrong, time.process_time() - begin
 
 
-def _attempt(text: str, limits: Any) -> tuple[str, str | None]:
+def _attempt(text: str, limits: Any, how: How) -> tuple[str, str | None]:
     """Result of a document, ``invalid``, ``refused`` or ``ran``, and the problem with that result, if any."""
     came_to = "invalid"
     try:
         report = irsim.validate(text=text, limits=limits)
         _check(report)
         try:
-            result = irsim.run(text=text, seed=1, steps=_STEPS, limits=limits, strict=report.valid)
+            result = _done(text, limits, how, strict=report.valid)
         except IrsimError as error:
             came_to = "refused" if report.valid else "invalid"
             _check_text(str(error))
@@ -108,6 +113,14 @@ def _attempt(text: str, limits: Any) -> tuple[str, str | None]:
     except Exception as error:
         return came_to, f"{type(error).__name__}: {error} at {_place(error)}"
     return came_to, None
+
+
+def _done(text: str, limits: Any, how: How, *, strict: bool) -> Any:
+    if how == "render":
+        return snapshot(text=text, seed=1, steps=_STEPS, size=200, limits=limits, strict=strict)
+    if how == "benchmark":
+        return irsim.benchmark(text, seeds=2, steps=_STEPS, workers=1, limits=limits, strict=strict)
+    return irsim.run(text=text, seed=1, steps=_STEPS, limits=limits, strict=strict)
 
 
 def _check(result: Any) -> None:

@@ -1,0 +1,69 @@
+"""Each option of the command line that takes a number, at its extremes: a result, or an error with a code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import ROOM, Run
+from tests.fuzz.extremes import EXTREMES
+
+VALUES = [*(f"{value:g}" for value in EXTREMES if isinstance(value, float)), "0", "2147483648", "1" + "0" * 400, "-3"]
+PEOPLE = "".join(f"{frame} {who} {frame / 10 + who} {who}\n" for frame in range(0, 30, 10) for who in (1, 2))
+MESH = """\
+v 0 0 0
+v 4 0 0
+v 4 0 4
+v 0 0 4
+f 1 2 3
+f 1 3 4
+"""
+MAP = ("map", "import", "floor.obj", "-o", "maps/floor.yaml", "--force")
+CROWD = ("bridge", "import-pedestrians", "people.txt", "-o", "people.yaml", "--fps", "10", "--force")
+COMMANDS: dict[tuple[str, ...], tuple[str, ...]] = {
+    ("validate", "room.yaml"): ("--seed", "--max-objects"),
+    ("diff", "room.yaml", "room.yaml"): ("--seed",),
+    ("run", "room.yaml", "--steps", "3"): ("--seed", "--max-objects", "--perturb position=", "--perturb delay="),
+    ("run", "room.yaml"): ("--steps",),
+    ("inspect", "kept"): ("--from", "--to", "--every", "--limit"),
+    ("diff-runs", "kept", "kept"): ("--tolerance",),
+    ("benchmark", "room.yaml", "--steps", "2", "--workers", "1"): ("--seeds", "--max-objects"),
+    ("benchmark", "room.yaml", "--seeds", "1", "--workers", "1"): ("--steps",),
+    ("render", "room.yaml", "-o", "a.png"): ("--seed", "--steps", "--size", "--strip", "--max-objects"),
+    ("map", "export", "room.yaml", "-o", "out/room.yaml"): ("--seed",),
+    ("bridge", "export-scene", "room.yaml", "-o", "room.sdf", "--force"): ("--seed",),
+    MAP: ("--level", "--height", "--resolution", "--headroom", "--slope", "--climb", "--radius", "--meters-per-unit"),
+    CROWD: ("--from", "--to", "--scale", "--step-time", "--radius", "--margin", "--windows", "--length", "--seed"),
+    (*CROWD[:5], "--force"): ("--fps",),
+}
+CALLS = [(words, option, value) for words, options in COMMANDS.items() for option in options for value in VALUES]
+
+
+def check(irsim: Run, part: int, parts: int) -> None:
+    """Make one of so many parts of the calls."""
+    for name, text in (("room.yaml", ROOM), ("people.txt", PEOPLE), ("floor.obj", MESH)):
+        Path(name).write_text(text)
+    irsim("run", "room.yaml", "--record-to", "kept", code=0)
+    for words, option, value in CALLS[part::parts]:
+        given = f"{option}{value}".split() if option.endswith("=") else [option, value]
+        result = irsim(*words, *given)
+        assert result.exit_code in (0, 1, 2), (words, option, value)
+        assert "internal-error" not in result.output + result.stderr, (words, option, value, result.output)
+
+
+@pytest.mark.parametrize("command", [("demo",), ("train",), ("bridge", "export-scene", "room.yaml", "-o", "room.sdf")])
+def test_a_seed_that_no_generator_takes_is_refused(irsim: Run, command: tuple[str, ...]) -> None:
+    Path("room.yaml").write_text(ROOM)
+    irsim(*command, "--seed", 2**64, code=2)
+
+
+def test_some_extremes(irsim: Run) -> None:
+    check(irsim, 3, 60)
+
+
+@pytest.mark.slow(10)
+@pytest.mark.rotates(10)
+@pytest.mark.parametrize("part", range(10))
+def test_all_extremes(irsim: Run, part: int) -> None:
+    check(irsim, part, 10)
