@@ -20,7 +20,7 @@ _MAX_SEARCHED = 64 * 1024
 _TOKEN = re.compile(r'"[^"\\]*(?:\\[\s\S][^"\\]*)*"|"[\s\S]*|[\[\]{}:,]|[^\s"\[\]{}:,]+')
 
 
-@dataclass
+@dataclass(eq=False)
 class BadFrame(Exception):
     """A message that is answered with an error.
 
