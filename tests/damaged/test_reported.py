@@ -14,11 +14,14 @@ from PIL import Image
 
 import irsim
 from irsim.benchmarks.log import Log, logged
+from irsim.bridges.base import BridgeError
+from irsim.bridges.splats.reading import read_splats
 from irsim.policies.networks import open_network
 from irsim.policies.networks.errors import PolicyFileError
 from irsim.results.benchmark import BenchmarkResult
 from irsim.runs.files import RunError
 from irsim.runs.reading import open_run
+from tests.bridges.splats.scenes import room, write_ply
 from tests.runs.conftest import ROOM
 
 pytestmark = pytest.mark.one_python
@@ -135,3 +138,26 @@ def test_a_log_with_a_changed_seed_is_not_believed(workspace: Path) -> None:
 
 def logged_head(text: str) -> BenchmarkResult:
     return BenchmarkResult.model_validate_json(text)
+
+
+def test_a_log_of_other_seeds_with_good_digests_is_not_believed(workspace: Path) -> None:
+    """The digests are right, and the seed is not that of the plan."""
+    (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
+    result = irsim.benchmark("room.yaml", "dash", seeds=[1], steps=3, log="log.jsonl")
+    head = logged_head((workspace / "log.jsonl").read_text().split("\n", 1)[0])
+    with Log("log.jsonl", head, {0: result.episodes[0].model_copy(update={"seed": 2})}):
+        pass
+    with pytest.raises(RunError, match="it has seed 2"):
+        irsim.benchmark("room.yaml", "dash", seeds=[1], steps=3, log="log.jsonl", resume=True)
+
+
+@pytest.mark.parametrize("column", [9, 13])
+def test_splats_with_huge_logits_and_quaternions(tmp_path: Path, column: int) -> None:
+    columns = room(spacing=1.0).columns[:3]
+    columns[1, column] = -1e30 if column == 9 else 1e300
+    file = write_ply(tmp_path / "room.ply", columns, encoding="ascii")
+    if column == 9:
+        assert read_splats(file).opacity[1] == 0
+    else:
+        with pytest.raises(BridgeError, match="quaternion has no direction"):
+            read_splats(file)

@@ -316,7 +316,8 @@ def _check_values(path: Path, rows: NDArray[np.float64], fields: list[str], firs
         if far.any():
             row, column = (int(value) for value in np.argwhere(far)[0])
             _refuse(path, f"splat {first + row:,}: '{fields[begin + column]}' is {rows[row, begin + column]:g}")
-    length = np.linalg.norm(rows[:, 6:10], axis=1)
+    with np.errstate(over="ignore"):
+        length = np.linalg.norm(rows[:, 6:10], axis=1)
     flat = ~((length > 1e-12) & (length < 1e12))
     if flat.any():
         _refuse(path, f"splat {first + int(flat.argmax()):,}: its quaternion has no direction")
@@ -325,7 +326,8 @@ def _check_values(path: Path, rows: NDArray[np.float64], fields: list[str], firs
 def _from_table(table: Singles, terms: int) -> Splats:
     """Splats from the columns of the file."""
     rotation = table[:, 6:10] / np.linalg.norm(table[:, 6:10].astype(np.float64), axis=1, keepdims=True)
-    opacity = 1 / (1 + np.exp(-table[:, 10]))
+    with np.errstate(over="ignore"):  # infinity is an opacity of 0
+        opacity = 1 / (1 + np.exp(-table[:, 10]))
     harmonics = None
     if terms:
         harmonics = np.ascontiguousarray(table[:, 14:].reshape(len(table), 3, terms).transpose(0, 2, 1))

@@ -214,7 +214,9 @@ def _add_scans(columns: Columns, trace: Trace, rows: NDArray[np.int64], lidars: 
             scans = "computed"
             continue
         quantum = lidar["range_max"] / _RANGE_STEPS
-        parts = np.where(np.isfinite(block[rows]), block[rows] / quantum, _RANGE_STEPS + 1)
+        seen = block[rows]
+        parts = np.full(seen.shape, _RANGE_STEPS + 1.0)
+        np.divide(seen, quantum, out=parts, where=np.isfinite(seen))
         values = np.clip(np.rint(parts), 0, _RANGE_STEPS + 1).astype(np.int32).T
         space -= len(zlib.compress(folded(values, 1), 1))
         if space < 0:

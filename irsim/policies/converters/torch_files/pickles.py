@@ -7,6 +7,7 @@ dictionaries, lists, numbers and texts are made, and the tensors of PyTorch are 
 from __future__ import annotations
 
 import pickletools
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import IO, Any
@@ -95,12 +96,14 @@ def read_pickle(stream: IO[bytes], storages: dict[str, str] | None = None) -> An
     """
     machine = _Machine({} if storages is None else storages)
     try:
-        for count, (operation, argument, _) in enumerate(pickletools.genops(stream)):
-            if count > MAX_OPERATIONS:
-                raise ContentError(f"a pickle has more than {MAX_OPERATIONS:,} operations")
-            if operation.name == "STOP":
-                return machine.stack.pop()
-            machine.run(operation.name, argument)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about escape sequences of broken texts
+            for count, (operation, argument, _) in enumerate(pickletools.genops(stream)):
+                if count > MAX_OPERATIONS:
+                    raise ContentError(f"a pickle has more than {MAX_OPERATIONS:,} operations")
+                if operation.name == "STOP":
+                    return machine.stack.pop()
+                machine.run(operation.name, argument)
     except ContentError:
         raise
     except _BROKEN as error:
