@@ -157,7 +157,7 @@ def test_splats_with_huge_logits_and_quaternions(tmp_path: Path, column: int) ->
     columns[1, column] = -1e30 if column == 9 else 1e300
     file = write_ply(tmp_path / "room.ply", columns, encoding="ascii")
     if column == 9:
-        assert read_splats(file).opacity[1] == 0
+        assert read_splats(file).opacity[1] < 1e-30
     else:
         with pytest.raises(BridgeError, match="quaternion has no direction"):
             read_splats(file)
