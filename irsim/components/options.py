@@ -163,7 +163,7 @@ class ShapeOptions(Options):
     """Distance between the axles, for `acker`; rectangles and circles then have their origin at the rear axle."""
 
 
-Vertices = Annotated[Integer, Field(ge=3, le=MAX_VERTICES)]
+Vertices = Annotated[Integer, Field(ge=3, le=1000)]
 
 
 class RandomOutline(ShapeOptions):

@@ -64,6 +64,7 @@ def test_each_number_of_a_schema_has_a_least_and_a_largest_value(file: Path) -> 
         ("", "appear_time: 1.0e+308", "robot.appear_time"),
         ("", "start_time: [1.0e+308]", "robot.start_time[0]"),
         ("", "state: [1, -1.0e+308, 0]", "robot.state[1]"),
+        ("", "group: 2147483647", "robot.group"),
         ("", "goal: [[1, 2], [3, 1.0e+308]]", "robot.goal[1][1]"),
         ("", "waypoints: [[1, 2], [3, 1.0e+308]]", "robot.waypoints[1][1]"),
         ("", "shape: {name: polygon, vertices: [[0, 0], [1, 0], [0, -1.0e+300]]}", "robot.shape.vertices[2][1]"),
@@ -100,3 +101,11 @@ def test_a_speed_near_zero_gives_a_long_but_finite_horizon(tmp_path: Path) -> No
     env = irsim.make(tmp_path / "slow.yaml", headless=True)
     assert horizon_of(env.simulation, None, DEFAULT_LIMITS) == (MAX_STEPS, "limits")
     env.end()
+
+
+def test_poses_of_a_replay_are_apart_in_time() -> None:
+    walk = "{{name: replay, times: [0.0, {}], poses: [[1, 1, 0], [2, 1, 0]]}}"
+    text = "world: {{}}\nobstacle: {{kinematics: {{name: omni_angular}}, behavior: {}}}\n"
+    for second, code in (("5.0e-324", "invalid-value"), ("0.001", None)):
+        report = irsim.validate(text=text.format(walk.format(second)))
+        assert [one.code for one in report.findings if one.severity == "error"] == ([code] if code else []), report

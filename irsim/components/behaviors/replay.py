@@ -21,6 +21,8 @@ __all__ = ["Replay"]
 
 _MARGIN = 1 + 1e-6
 """Factor on the highest recorded speed, so that rounding does not make a limit cut it."""
+_SHORTEST = 1e-9
+"""Least time between two poses [s]."""
 _SLOWEST = 0.01
 """Least limit, for an object that stands [m/s]."""
 
@@ -65,7 +67,7 @@ class Replay(BehaviorOptions):
             what = f"{len(self.times)} times and {len(self.poses)} poses do not belong together"
             raise problem("wrong-length", what, fix="give one pose for each time")
         for number, (before, after) in enumerate(itertools.pairwise(self.times), 1):
-            if not after > before:
+            if not after - before >= _SHORTEST:
                 what = f"times must increase, but times[{number}] = {after:g} follows {before:g}"
                 raise problem("invalid-value", what, fix="sort the rows by time, and leave out repeated times")
         return self

@@ -31,6 +31,7 @@ State = Annotated[list[Component], Field(max_length=64, json_schema_extra={"x-un
 _Sizes = Field(min_length=1, max_length=64)
 Control = Annotated[list[Component], _Sizes, Field(json_schema_extra={"x-unit": "control units"})]
 Rates = Annotated[list[Unbounded], _Sizes, Field(json_schema_extra={"x-unit": "control units / s"})]
+Group = Annotated[Integer, Field(ge=-(10**9), le=10**9)]
 Waypoints = Annotated[list[Pose], Field(min_length=1, max_length=100_000)]
 Mass = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg"})]
 Inertia = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg m^2"})]
@@ -160,7 +161,7 @@ class Entry(Options):
     numbers [x, y, heading] gives. `state` has no tolerance of its own: sqrt(dx^2 + dy^2 + turn^2), in metres and
     radians, must be below `goal_threshold`, so 0.1 allows at most 0.1 rad. `diff` and `omni_angular` turn to it at
     their goal under every built-in behavior, and a car comes in with it under `follow`."""
-    group: Integer | None = None
+    group: Group | None = None
     """Group number; objects with the same number form a group. Null gives each entry a number of its own."""
     group_name: Annotated[Any, PerObject(Text | None)] = None
     """Name of the group; null is `<role>_<group>`."""
