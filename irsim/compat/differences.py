@@ -144,6 +144,16 @@ DIFFERENCES: dict[str, Difference] = {
         "reaches goal poses under `follow`",
         "a robot at its goal should arrive",
     ),
+    "D23": Difference(
+        "`mdownsample: N` keeps every Nth row and column of a map, so thin walls disappear",
+        "blocks of N x N cells are merged; a block has the largest occupancy of its cells",
+        "a wall in the picture must be a wall in the world",
+    ),
+    "D24": Difference(
+        "transparent pixels of a picture have the color that is stored below them, mostly black: occupied",
+        "they count as white: free; a warning says how many there are",
+        "a plan drawn on transparent paper is meant as it looks",
+    ),
     "D25": Difference(
         "mirror-image scenes, such as two that meet head-on or a circle swap, are resolved by the order in which "
         "objects move; `sfm` takes the side of a rounding error",
@@ -240,7 +250,8 @@ DIFFERENCES: dict[str, Difference] = {
 KEY_DIFFERENCES: dict[str, str] = {
     "world.name": "D9",
     "world.collision_mode": "D20, D26",
-    "world.obstacle_map": "D15, D16, D17",
+    "world.obstacle_map": "D15, D16, D17, D24",
+    "world.mdownsample": "D23",
     "entry.role": "D9",
     "entry.distribution": "D7, format-17",
     "entry.arrive_mode": "D22",

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.log import Logger
+from irsim.components.maps._grid import merged
 from irsim.components.maps._site import OCCUPIED
 from irsim.objects.base import column
 from irsim.objects.describe import grid_values
@@ -297,7 +298,7 @@ class WorldView(_Clock):
 
         Args:
             obstacle_map: None, an array, a picture file name, or a mapping with the name of a generator.
-            mdownsample: Keep every Nth row and column.
+            mdownsample: Merge blocks of N x N cells, each of which has the largest occupancy of its cells.
 
         Returns:
             Occupancies (nx, ny), indices of the occupied cells (2, M), and centres of these cells (2, M) [m]; three
@@ -308,7 +309,7 @@ class WorldView(_Clock):
         values = resolve_obstacle_map(obstacle_map, self.width, self.height)
         if values is None:
             return None, None, None
-        values = values[::mdownsample, ::mdownsample]
+        values = merged(values, mdownsample)
         index = np.array(np.nonzero(values > OCCUPIED), dtype=np.int64)
         cell = np.array([[self.width / values.shape[0]], [self.height / values.shape[1]]])
         return values, index, np.array(self.offset)[:2, None] + (index + 0.5) * cell

@@ -30,6 +30,7 @@ from irsim.common.arrays import Floats
 from irsim.common.extras import require
 from irsim.common.files import TargetError, check_suffix
 from irsim.common.text import clean
+from irsim.components.maps._site import UNKNOWN_AS
 from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.errors import ArgumentError
 from irsim.results.records import MapImportResult, MapLevel, MapTrip
@@ -133,7 +134,7 @@ def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **optio
 def _cells(result: Occupancy, options: ImportOptions, unknown: str) -> tuple[Floats, Floats]:
     """(nx, ny) occupancies after the radius is taken away, -1 where unknown; the same with unknown cells filled in."""
     values = eroded(result.values, options.radius / result.grid.resolution)
-    return values, np.where(values < 0, 100.0 if unknown == "occupied" else 0.0, values)
+    return values, np.where(values < 0, UNKNOWN_AS[unknown], values)
 
 
 def read_occupancy(

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, create_model
 
 from irsim.common.arrays import Floats
-from irsim.components.maps._picture import image_raster, open_picture
+from irsim.components.maps._picture import flattened, image_raster, open_picture
 from irsim.components.maps._site import MapProblem, MapSite, Raster, bundled_map, bundled_names
 from irsim.components.maps.perlin import cells_of, noise_values
 from irsim.components.options import MapOptions
@@ -207,7 +207,8 @@ def _picture(path: str) -> Floats:
     site = MapSite(folders=[Path()], bundled=bundled_map, bundled_names=bundled_names)
     try:
         file = site.find(path)
-        return np.ascontiguousarray(image_raster(*open_picture(file, path, site)).values())
+        pixels, is_png = open_picture(file, path, site)
+        return np.ascontiguousarray(image_raster(flattened(pixels, path, site), is_png).values())
     except MapProblem as problem:
         kind = FileNotFoundError if problem.code == "map-not-found" else ValueError
         raise kind(problem.message) from None

@@ -6,13 +6,15 @@ import copyreg
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 import irsim._core as core
 from irsim.components.maps._site import Noise, Raster
 
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
 
-__all__ = ["MapCells", "MapGrid", "Walls", "map_grid"]
+__all__ = ["MapCells", "MapGrid", "Walls", "map_grid", "merged"]
 
 _MAX_CELLS_ALONG = 2**31 - 1
 """Largest number of cells along one side of a map."""
@@ -111,7 +113,7 @@ def map_grid(
         width: Width of the rectangle [m].
         height: Height of the rectangle [m].
         origin: Lower left corner of the rectangle, world frame [m].
-        downsample: Keep every Nth row and column.
+        downsample: Merge blocks of N x N cells.
     """
     downsample = min(downsample, _MAX_CELLS_ALONG)  # this leaves one cell of any map
     if isinstance(source, Noise):
@@ -130,11 +132,23 @@ def map_grid(
         return MapGrid((nx, ny), cell, origin, part, None, None)
     raster = source
     if downsample > 1:
-        raster = Raster(source.levels[::downsample, ::downsample], source.table)
+        raster = Raster(merged(source.values(), downsample))
     nx, ny = raster.levels.shape
     cell = (width / nx, height / ny)
     cells = core.OccupancyGrid(raster.occupied(), origin, cell)
     return MapGrid((nx, ny), cell, origin, core.GridCells(grid=cells), raster, cells)
+
+
+def merged(values: Floats, side: int) -> Floats:
+    """Occupancies of blocks of cells, each with the largest of its cells, so that no wall is lost.
+
+    Args:
+        values: (nx, ny) occupancies.
+        side: Cells along a side of a block; those at the upper ends have the cells that are left.
+    """
+    for axis in (0, 1):
+        values = np.maximum.reduceat(values, np.arange(0, values.shape[axis], side), axis=axis)
+    return values
 
 
 def _reduce_grid(grid: core.OccupancyGrid) -> tuple[Any, ...]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from irsim.common.pictures import opened_picture
 from irsim.common.records import ContentError
+from irsim.common.text import clean
 from irsim.components.maps._site import MapProblem, MapSite, Raster
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
     from irsim.common.arrays import Floats
 
-__all__ = ["image_raster", "open_picture", "upright"]
+__all__ = ["flattened", "image_raster", "open_picture", "upright"]
 
 _WEIGHTS = (0.2989, 0.5870, 0.1140)
 """Weights of red, green and blue in a grey level (ITU-R BT.601, rounded as in MATLAB's rgb2gray)."""
@@ -52,6 +53,31 @@ def open_picture(path: Path, name: str, site: MapSite) -> tuple[NDArray[Any], bo
             given=name,
             fix="save it as a grey PNG: black is occupied, white is free",
         ) from None
+
+
+def flattened(pixels: NDArray[Any], name: str, site: MapSite) -> NDArray[Any]:
+    """Pixels of a picture on white paper, without opacity; pixels that are opaque everywhere are returned as they are.
+
+    Args:
+        pixels: (H, W) or (H, W, channels).
+        name: Name of the file in messages.
+        site: Where the user hears how much of it is transparent.
+    """
+    if pixels.ndim == 2 or pixels.shape[-1] not in (2, 4):
+        return pixels
+    full = np.iinfo(pixels.dtype).max
+    opacity = pixels[..., -1:] / full
+    share = float((opacity < 1).mean())
+    if not share:
+        return pixels
+    site.notes.append(
+        (
+            "map-transparent",
+            f"{share:.1%} of '{clean(name)}' is transparent and counts as the white paper below it: free",
+        )
+    )
+    colors = np.round(pixels[..., :-1] * opacity + full * (1 - opacity)).astype(pixels.dtype)
+    return colors[..., 0] if colors.shape[-1] == 1 else colors
 
 
 def upright(pixels: NDArray[Any]) -> NDArray[Any]:

@@ -8,11 +8,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
 from irsim.diagnostics.errors import PickledWhole
 
 __all__ = [
     "OCCUPIED",
+    "UNKNOWN_AS",
     "MapProblem",
     "MapSite",
     "Noise",
@@ -31,6 +33,10 @@ if TYPE_CHECKING:
 
 OCCUPIED = 50
 """Map cells with a larger occupancy, of 100, are occupied."""
+UNKNOWN_AS = {"free": 20.0, "occupied": 75.0}
+"""Occupancies of unknown cells that count as free or as occupied; pictures show them as grey."""
+_SLIP = 0.85
+"""Similarity from which on a name is taken for a slip of the name of a bundled map, which shall not replace a plan."""
 _MAX_CELLS_ALONG = 1e15
 """Number of cells that a count is cut to, so that it stays an exact integer; no map is that large."""
 
@@ -122,6 +128,7 @@ class MapSite:
         notes: Hints for the user, as (code, sentence).
         kept: Name -> file to read without looking for it.
         files: Name -> file that was read, without bundled maps.
+        says_places: Whether messages name the folders that were searched, which a server keeps to itself.
     """
 
     width: float | None = None
@@ -136,6 +143,7 @@ class MapSite:
     notes: list[tuple[str, str]] = field(default_factory=list)
     kept: Mapping[str, str] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
+    says_places: bool = True
 
     def find(self, name: str, beside: Path | None = None) -> Path:
         """The file of that name.
@@ -166,9 +174,15 @@ class MapSite:
         if bundled is not None:
             return bundled
         near = self._near(name, folders)
+        places = list(dict.fromkeys(os.path.abspath(folder) for folder in folders))
+        searched = (
+            ""
+            if Path(name).is_absolute() or not self.says_places
+            else f" in {', '.join(clean(one, 200) for one in places)}"
+        )
         raise MapProblem(
             "map-not-found",
-            f"there is no map file '{name}'",
+            f"there is no map file '{name}'{searched}",
             given=name,
             allowed=f"a file beside the scenario, or a bundled map: {', '.join(self.bundled_names())}",
             fix=f"path: {near}" if near is not None else "give the path of the file relative to the scenario",
@@ -202,7 +216,7 @@ class MapSite:
 
     def _near(self, name: str, folders: Sequence[Path]) -> str | None:
         """The name of a file or bundled map that is similar to ``name``; None if none is."""
-        choices = list(self.bundled_names())
+        choices = [own for own in self.bundled_names() if nearest(name, [own], _SLIP) is not None]
         suffix = Path(name).suffix.lower()
         for folder in folders:
             try:

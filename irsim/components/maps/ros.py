@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from irsim.components.maps._site import MapSite, Raster
+from irsim.components.maps._site import UNKNOWN_AS, MapSite, Raster
 from irsim.components.options import MapOptions
 from irsim.options.registry import MAPS
 
@@ -23,7 +23,7 @@ class RosMap(MapOptions):
     path: Annotated[str, Field(strict=True, min_length=1)]
     """YAML file of the map."""
     unknown: Literal["free", "occupied"] = "free"
-    """Whether cells that are neither free nor occupied count as free or occupied."""
+    """Whether cells that are neither free nor occupied count as free or occupied. Pictures show them in grey."""
 
 
 @MAPS.register(RosMap)
@@ -36,4 +36,4 @@ def ros(options: RosMap, site: MapSite) -> Raster:
     from irsim.components.maps._rosmap import ros_raster
 
     path = site.find(options.path)
-    return ros_raster(path, options.path, site, 100.0 if options.unknown == "occupied" else 0.0)
+    return ros_raster(path, options.path, site, UNKNOWN_AS[options.unknown])

@@ -8,7 +8,7 @@ namespace irsim {
 
 struct PerlinCells {
   std::array<int, 2> size;          // cells of the noise along x and y
-  int every;                        // one of this many cells is kept along each axis, starting with the first
+  int every;                        // cells along a side of a block, which is occupied if one of its cells is
   std::array<double, 2> origin;     // lower left corner of the map, world frame [m]
   std::array<double, 2> cell_size;  // [m]
   double complexity, fill;
@@ -32,10 +32,13 @@ inline Outline outline(const PerlinCells& p, const Draws& draws, std::uint64_t) 
   std::vector<std::uint8_t> cells = perlin_cells(noise, draw_permutation(own));
   const int step = std::max(1, p.every), columns = (p.size[0] + step - 1) / step, rows = (p.size[1] + step - 1) / step;
   if (step > 1) {
-    std::vector<std::uint8_t> kept;
-    for (int j = 0; j < p.size[1]; j += step)
-      for (int i = 0; i < p.size[0]; i += step) kept.push_back(cells[static_cast<std::size_t>(j) * p.size[0] + i]);
-    cells = std::move(kept);
+    std::vector<std::uint8_t> blocks(static_cast<std::size_t>(columns) * rows, 0);
+    for (int j = 0; j < p.size[1]; ++j) {
+      for (int i = 0; i < p.size[0]; ++i)
+        blocks[static_cast<std::size_t>(j / step) * columns + i / step] |=
+            cells[static_cast<std::size_t>(j) * p.size[0] + i];
+    }
+    cells = std::move(blocks);
   }
   return cells_outline(std::make_shared<OccupancyGrid>(columns, rows, Vec2{p.origin[0], p.origin[1]},
                                                        Vec2{p.cell_size[0], p.cell_size[1]}, cells));

@@ -215,6 +215,11 @@ MAPS_AND_LIMITS: dict[str, Code] = {
         "The indoor scans of IR-SIM may not be redistributed; maps of flats made for irsim replace them "
         "under the same names.",
     ),
+    "map-transparent": Code(
+        "map with transparent parts",
+        "Transparent pixels count as the white paper below them, so they are free. Flatten the picture on the color "
+        "that you mean.",
+    ),
     "map-read-as": Code(
         "how a map was read",
         "The file of a map leaves something open, or names a picture by a path of another computer. The message says "

@@ -116,7 +116,7 @@ class World(WorldView):
         step_mode, control_mode, collision_mode: As in a scenario.
         gravity, friction, restitution, drive_tau: Settings of ``collision_mode: contact``, as in a scenario.
         obstacle_map: An array (nx, ny) of occupancies, a picture file, or the mapping of a generator.
-        mdownsample: Keep every Nth row and column of the map.
+        mdownsample: Merge blocks of N x N cells of the map.
         fog_map, fog_map_resolution: Whether to record the cells that robots have seen, and the size of a cell [m].
         plot: Keys of the figure.
         status: Word shown in titles.

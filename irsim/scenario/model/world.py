@@ -178,7 +178,7 @@ class WorldModel(Options):
     obstacle_map: Annotated[Any, _MapSelect(MAPS, null=True, short=("image", "path"))] = None
     """Occupancy grid over the world: an image file name, or a mapping with a generator's name and options."""
     mdownsample: Annotated[int, Field(strict=True, ge=1, le=10_000), OrNull(1)] = 1
-    """Keep every Nth row and column of the grid."""
+    """Merge blocks of N x N cells of the grid; a block is occupied if one of its cells is."""
     zones: Annotated[list[Zone], Field(max_length=1000), OrNull([])] = []
     """Named lines and areas that are watched: who crosses, enters and leaves them, and when. Without effect on
     motion and sensors."""

@@ -20,6 +20,8 @@ from irsim.scenario.model.world import WorldModel
 __all__ = ["LoadedMap", "load_map"]
 
 _PATH = ("world", "obstacle_map")
+_WARNED = ("map-transparent",)
+"""Notes about maps that are warnings."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +92,7 @@ def _site(world: WorldModel, source: str | None, limits: Limits, kept: Mapping[s
         max_cells=limits.cells,
         max_bytes=limits.map_bytes,
         kept=kept,
+        says_places=limits.root is None,
     )
 
 
@@ -153,7 +156,7 @@ def _with_map_extent(world: WorldModel, made: Raster | Noise) -> WorldModel:
 
 def _notes(site: MapSite, written: Any) -> list[Finding]:
     path = _PATH if isinstance(written, str) else (*_PATH, "path")
-    return [hint(code, path, message) for code, message in site.notes]
+    return [(warning if code in _WARNED else hint)(code, path, message) for code, message in site.notes]
 
 
 def _check_occupancy(grid: MapGrid, world: WorldModel) -> list[Finding]:
@@ -166,7 +169,7 @@ def _check_occupancy(grid: MapGrid, world: WorldModel) -> list[Finding]:
                 "map-empty",
                 _PATH,
                 f"none of the {total:,} cells is occupied",
-                fix="black is occupied and white is free; 'mdownsample' may have dropped thin lines",
+                fix="black is occupied and white is free",
             )
         ]
     if grid.cells.count == total:

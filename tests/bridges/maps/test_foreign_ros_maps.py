@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from irsim import api
 from irsim.bridges.maps import import_map
@@ -18,4 +20,6 @@ def test_what_is_known_to_be_free_counts(foreign, tmp_path, name, area) -> None:
     assert result.trip is not None
     source = read({"world": {"obstacle_map": {"name": "ros", "path": str(foreign / "ros-maps" / f"{name}.yaml")}}})
     assert source.scenario is not None
+    picture = np.asarray(Image.open(tmp_path / "map.png"))
+    assert ((picture > 190) & (picture < 220)).sum() == result.unknown, "unknown cells are drawn as unknown"
     assert api.run(tmp_path / "map.yaml", seed=1).outcome == "success"

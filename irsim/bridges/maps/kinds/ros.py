@@ -25,7 +25,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     def refuse(name: str, folders: object) -> str | None:
         return None if limits.root is None else why_outside(name, path.parent)
 
-    site = MapSite(folders=[Path()] if limits.root is None else [], refuse=refuse)
+    site = MapSite(folders=[Path()] if limits.root is None else [], refuse=refuse, says_places=limits.root is None)
     try:
         raster = ros_raster(path, path.name, site, UNKNOWN)
         notes = [sentence for _, sentence in site.notes]
