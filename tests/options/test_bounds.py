@@ -109,3 +109,11 @@ def test_poses_of_a_replay_are_apart_in_time() -> None:
     for second, code in (("5.0e-324", "invalid-value"), ("0.001", None)):
         report = irsim.validate(text=text.format(walk.format(second)))
         assert [one.code for one in report.findings if one.severity == "error"] == ([code] if code else []), report
+
+
+def test_random_outlines_of_many_objects_have_a_limit_together() -> None:
+    shape = "{name: polygon, random_shape: true, num_vertices_range: [999, 1000]}"
+    crowd = "world: {{width: 500, height: 500}}\nobstacle: {{number: {}, distribution: {{name: random}}, shape: {}}}\n"
+    for number, code in ((10_000, "too-many-objects"), (10, None)):
+        report = irsim.validate(text=crowd.format(number, shape))
+        assert [one.code for one in report.findings if one.severity == "error"] == ([code] if code else []), report

@@ -12,11 +12,14 @@ from irsim.scenario.messages.findings import Finding, error, hint
 from irsim.scenario.resolve.expand import DEFAULT_RADIUS
 from irsim.scenario.yaml.formatting import flow
 
+_MAX_DRAWN = 2_000_000
+"""Most vertices of all random outlines of a scenario."""
 _RANGES = ("radius_range", "avg_radius_range", "irregularity_range", "spikeyness_range", "num_vertices_range")
 
 
 def check(context: Context) -> Iterator[Finding]:
     """Check each written shape once."""
+    yield from _vertices(context)
     seen: set[Path] = set()
     for record in context.entry_objects:
         if not context.is_given(record, "shape"):
@@ -33,6 +36,22 @@ def check(context: Context) -> Iterator[Finding]:
         if path not in seen:
             seen.add(path)
             yield from _shape(path, record.shape)
+
+
+def _vertices(context: Context) -> Iterator[Finding]:
+    """Random outlines of all objects together have a limit: their memory grows with objects times vertices."""
+    drawn = [record for record in context.entry_objects if getattr(record.shape, "random_shape", False)]
+    drawn = [record for record in drawn if hasattr(record.shape, "num_vertices_range")]
+    total = sum(record.shape.num_vertices_range[1] for record in drawn)
+    if total > _MAX_DRAWN:
+        most = max(drawn, key=lambda record: int(record.shape.num_vertices_range[1]))
+        yield error(
+            "too-many-objects",
+            (*context.entry_path(most, "shape"), "num_vertices_range"),
+            f"{len(drawn):,} random outlines of all objects have up to {total:,} vertices",
+            allowed=f"at most {_MAX_DRAWN:,} vertices of all random outlines",
+            fix="reduce 'number' or 'num_vertices_range'",
+        )
 
 
 def _shape(path: Path, shape: Any) -> Iterator[Finding]:
