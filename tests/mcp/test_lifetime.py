@@ -168,7 +168,8 @@ def start(folder: Path, work: str) -> subprocess.Popen[bytes]:
         [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
     resources = {"memory": 10**10, "cpu": 60, "written": 10**6}
-    line = json.dumps({"task": "x", "workspace": str(folder), "resources": resources, "limits": {}})
+    where = {"path": str(folder), "descriptor": None}
+    line = json.dumps({"task": "x", "workspace": where, "resources": resources, "limits": {}})
     assert process.stdin is not None
     process.stdin.write(line.encode() + b"\n")
     process.stdin.flush()
