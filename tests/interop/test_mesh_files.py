@@ -24,6 +24,7 @@ from tests.bridges.maps.scenes import TWO_ROOMS, box, flat, house, mesh_set, sto
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("meshes")]
 trimesh = pytest.importorskip("trimesh")
+from irsim.bridges.maps.kinds._mesh_process import load  # noqa: E402
 
 
 def soup(triangles: np.ndarray):
@@ -183,8 +184,26 @@ def test_an_obj_names_materials_and_nothing_is_opened(tmp_path, monkeypatch) -> 
     opened = []
     real = Path.open
     monkeypatch.setattr(Path, "open", lambda self, *rest, **more: opened.append(self.name) or real(self, *rest, **more))
-    import_map(tmp_path / "a.obj", tmp_path / "a.yaml")
+    load(tmp_path / "a.obj", {"bytes": 10**6, "triangles": 10**6})
     assert "secret.mtl" not in opened
+
+
+def test_a_file_of_collada_says_its_unit_and_its_axis(tmp_path) -> None:
+    pytest.importorskip("collada")
+    scene = np.concatenate([box([0, 0, -0.1], [4, 3, 0]), box([1, 1, 0], [2, 2, 1])])
+    for name, triangles, unit, axis in [("z", scene, 1, "Z_UP"), ("y", y_up(scene) * 100, 0.01, "Y_UP")]:
+        corners = triangles.reshape(-1, 3)
+        mesh = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), process=False)
+        text = trimesh.exchange.dae.export_collada(mesh).decode()
+        text = re.sub(r"<unit[^>]*>", "", re.sub(r"<up_axis>.*?</up_axis>", "", text))
+        text = re.sub("<asset>", f'<asset><unit meter="{unit}"/><up_axis>{axis}</up_axis>', text)
+        (tmp_path / f"{name}.dae").write_text(text)
+        result = import_map(tmp_path / f"{name}.dae", tmp_path / f"{name}.yaml")
+        assert result.free_area == pytest.approx(11, abs=0.3)
+        assert result.origin == pytest.approx((-0.05, -0.05), abs=0.11)
+    (tmp_path / "x.dae").write_text(text.replace("<COLLADA", "<!DOCTYPE x SYSTEM 'x.dtd'><COLLADA"))
+    with pytest.raises(BridgeError, match="type of document"):
+        import_map(tmp_path / "x.dae", tmp_path / "x.yaml")
 
 
 def floor_and_far(tmp_path: Path) -> Path:

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.kinds import _gltf, mesh
+from irsim.bridges.maps.kinds import _gltf, _headers
 from irsim.bridges.maps.source import ImportLimits
 from tests.bridges.maps.scenes import box, write_glb
 
@@ -152,10 +152,10 @@ def test_ply_headers(tmp_path, header, said) -> None:
     file = tmp_path / "scan.ply"
     file.write_bytes(f"ply\n{header}end_header\n".encode() + bytes(300))
     with pytest.raises(BridgeError, match=said):
-        mesh.check_ply(file)
+        _headers.check_ply(file)
     file.write_bytes(b"ply\nformat ascii 1.0\n")
     with pytest.raises(BridgeError, match="no end"):
-        mesh.check_ply(file)
+        _headers.check_ply(file)
 
 
 def test_stl_headers(tmp_path) -> None:
@@ -168,7 +168,7 @@ def test_stl_headers(tmp_path) -> None:
     ]:
         file.write_bytes(content)
         if said is None:
-            mesh.check_stl(file)
+            _headers.check_stl(file)
         else:
             with pytest.raises(BridgeError, match=said):
-                mesh.check_stl(file)
+                _headers.check_stl(file)

@@ -4,24 +4,22 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 import os
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from irsim.bridges.maps.apart import Refused, serve
 from irsim.common.arrays import Floats
-from irsim.common.child import limit
 from irsim.common.extras import require
 
 require("usd", "pxr")
 from pxr import Sdf, Usd, UsdGeom
 
-__all__ = ["Collector", "Refused", "main"]
+__all__ = ["Collector", "main"]
 
 _CUBE = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
 """Sides of a cube whose corner k has x, y, z from the bits of k, counterclockwise from outside."""
@@ -29,10 +27,6 @@ _AROUND, _RINGS = 32, 8
 """Corners of round shapes: around the axis, and from the middle of a cap to its rim."""
 _MAX_DEPTH = 8
 """How deep instancers may be nested."""
-
-
-class Refused(Exception):
-    """The stage cannot be used; the second argument is the advice."""
 
 
 class Collector:
@@ -237,29 +231,15 @@ def _mesh(mesh: Any, name: str, time: Any, most: int) -> Floats:
     return corners[:, ::-1] if left_handed else corners
 
 
-_MEMORY = 12 * 1024**3
-"""Address space of the process [bytes]."""
 _MAX_LAYERS = 5_000
 
 
 def main() -> None:
     """Read the request, answer it."""
-    request = json.loads(sys.stdin.read())
-    limit(memory=_MEMORY)
-    try:
-        answer = _read(request)
-    except Refused as refused:
-        answer = dict(zip(("error", "fix"), refused.args, strict=False))
-    except MemoryError:
-        answer = {"error": "it does not fit into memory", "fix": "give a smaller stage"}
-    except Exception as error:  # whatever the library stumbles over is the file's fault
-        answer = {"error": f"it is damaged ({type(error).__name__}: {str(error).strip().splitlines()[-1][:150]})"}
-    print("\n" + json.dumps(answer), flush=True)
-    os._exit(0)  # what the library does at its end can fail, and nothing is left to do
+    serve(_read)
 
 
-def _read(request: dict[str, Any]) -> dict[str, Any]:
-    path = Path(request["file"])
+def _read(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
     missing = _check_layers(path)
     stage = Usd.Stage.Open(str(path))
     if stage is None:
@@ -272,7 +252,6 @@ def _read(request: dict[str, Any]) -> dict[str, Any]:
     triangles = collector.stage(stage) * scale
     if up == "Y":
         triangles = np.stack([triangles[..., 0], -triangles[..., 2], triangles[..., 1]], axis=-1)
-    np.savez(request["out"], triangles=triangles)
     left_out = ", ".join(sorted(collector.left_out))
     notes = [f"prims of these types were left out: {left_out}"] if left_out else []
     if request["unit"] is None and not UsdGeom.StageHasAuthoredMetersPerUnit(stage):
@@ -281,7 +260,7 @@ def _read(request: dict[str, Any]) -> dict[str, Any]:
         notes.append(f"one of its layers was not found: '{missing[0][:150]}'")
     elif missing:
         notes.append(f"{len(missing)} of its layers were not found, such as '{missing[0][:150]}'")
-    return {"meters_per_unit": scale, "frame": "usd_yup" if up == "Y" else "usd", "notes": notes}
+    return triangles, {"meters_per_unit": scale, "frame": "usd_yup" if up == "Y" else "usd", "notes": notes}
 
 
 def _check_layers(path: Path) -> list[str]:
@@ -316,7 +295,3 @@ def _check_reference(asset: str, target: str, root: Path, path: Path) -> None:
         shown = asset[:150]
         fix = "put all its files into one folder, or flatten the stage: usdcat --flatten"
         raise Refused(f"it refers to '{shown}', which is outside of its folder and is not read", fix)
-
-
-if __name__ == "__main__":
-    main()

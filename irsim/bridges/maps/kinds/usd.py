@@ -7,27 +7,19 @@ layers before it opens the stage.
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
-import tempfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from irsim.bridges.maps.apart import read_apart
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
 from irsim.common.archives import opened_archive
-from irsim.common.child import ONE_THREAD
 from irsim.common.records import ContentError
 
 __all__ = ["KIND"]
 
 _MAX_FILES = 10_000
 """Files in a ``.usdz``."""
-_ONE_THREAD = ONE_THREAD | {"PXR_WORK_THREAD_LIMIT": "1", "MALLOC_ARENA_MAX": "2"}
-"""Environment of the process: each thread reserves address space, of which the process may have a limited amount."""
 
 
 def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
@@ -40,47 +32,14 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
         raise unusable(path, "y does not point down in stages of USD", "give --up y or z, or leave it out")
     if path.suffix.lower() == ".usdz":
         _check_archive(path)
-    with tempfile.TemporaryDirectory(prefix="irsim-usd-") as folder:
-        out = Path(folder) / "stage.npz"
-        request = {"file": os.path.abspath(path), "out": str(out), "triangles": limits.triangles}
-        request |= {"up": options.up, "unit": options.meters_per_unit}
-        command = [sys.executable, "-m", "irsim.bridges.maps.kinds._usd_process"]
-        try:
-            done = subprocess.run(
-                command,
-                input=json.dumps(request),
-                capture_output=True,
-                text=True,
-                timeout=limits.seconds,
-                check=False,
-                cwd=folder,  # from which Python would import modules
-                env=os.environ | _ONE_THREAD,
-            )
-        except subprocess.TimeoutExpired:
-            what = f"reading it took longer than {limits.seconds:g} s"
-            raise unusable(path, what, "give a smaller stage, such as one without instances") from None
-        answer = _answer(done.stdout)
-        if "error" in answer:
-            raise unusable(path, answer["error"], answer.get("fix"))
-        if done.returncode != 0 or not out.is_file():
-            lines = [line.strip() for line in done.stderr.splitlines() if line.strip() and not line.startswith("#")]
-            said = f"; {lines[-1][:200]}" if lines else ""
-            raise unusable(path, f"the library for USD failed on it (exit code {done.returncode}{said})")
-        with np.load(out, allow_pickle=False) as stored:
-            triangles = stored["triangles"]
+    request = {"up": options.up, "unit": options.meters_per_unit}
+    triangles, answer = read_apart(path, f"{__package__}._usd_process", limits, request)
     scale, frame = float(answer["meters_per_unit"]), answer["frame"]
     if not np.isfinite(triangles).all():
         raise unusable(path, "some of its points are not numbers")
     if not len(triangles):
         raise unusable(path, "it has no visible meshes", "export the stage with its meshes, not only references")
     return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"])
-
-
-def _answer(text: str) -> dict[str, Any]:
-    """The answer of the process: its last line of JSON."""
-    lines = [line for line in text.splitlines() if line.startswith("{")]
-    result = json.loads(lines[-1]) if lines else {}
-    return result if isinstance(result, dict) else {}
 
 
 def _check_archive(path: Path) -> None:
