@@ -34,7 +34,6 @@ def _may_be_mesh(head: bytes) -> bool:
 
 
 _FRAMES = {"y": "habitat_yup", "z": "irsim", "-y": "colmap"}
-"""Size of an OBJ file [bytes], which needs many times as much memory."""
 _STEEP = 1.5
 """How much more area must face along another axis before a note says so."""
 
@@ -106,6 +105,7 @@ KIND = Kind(
     title="a mesh",
     suffixes=(".glb", ".gltf", ".obj", ".ply", ".stl", ".dae"),
     accepts=_may_be_mesh,
+    roots=("COLLADA",),
     read=read,
     libraries=("trimesh",),
     unused=("opacity", "lanes", "root"),
