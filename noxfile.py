@@ -55,7 +55,13 @@ DEBIAN_PEERS = (
     "python3-tf2-msgs", "python3-visualization-msgs", "ros-base", "ros-nav-msgs",
 )  # fmt: skip
 """Packages of Debian 12 that bridges meet in tests."""
-PYTHON_PEERS = ("mcap-ros2-support>=0.5", "msgpack>=1", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")
+PYTHON_PEERS = (
+    "mcap-ros2-support>=0.5",
+    "meshoptimizer==0.2.30a0",
+    "msgpack>=1",
+    "pycolmap>=4",
+    "zenoh-ros2-sdk==0.1.8",
+)
 """Packages of Python that bridges meet in tests, and that are no dependencies."""
 BLENDER = "bpy==4.5.*"
 """Blender as a module (947 MB), for the Python of bridges; in its own environment, as it needs another NumPy."""

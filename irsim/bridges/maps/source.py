@@ -237,6 +237,7 @@ class Kind:
         libraries: Their modules.
         unused: Names of options that say nothing about such files.
         roots: Names of the root elements of such files, if they are files of XML.
+        by_name: Whether only the names of such files say what they are.
     """
 
     name: str
@@ -249,6 +250,7 @@ class Kind:
     libraries: tuple[str, ...] = ()
     unused: tuple[str, ...] = ()
     roots: tuple[str, ...] = ()
+    by_name: bool = False
 
 
 @cache
@@ -278,7 +280,7 @@ def find_kind(path: Path) -> Kind:
     if root is not None:
         return _xml_kind(path, root)
     named = [kind for kind in kinds() if suffix in kind.suffixes]
-    fitting = [kind for kind in named or kinds() if kind.accepts(head)]
+    fitting = [kind for kind in named or kinds() if kind.accepts(head) and (named or not kind.by_name)]
     if fitting:
         return fitting[0]
     if named:

@@ -1,4 +1,4 @@
-"""Checks that a glTF file has the content that it declares, before a reader allocates anything."""
+"""Opens a glTF file: it has the content that it declares, which is checked before anything is allocated."""
 
 from __future__ import annotations
 
@@ -10,69 +10,60 @@ from typing import Any
 from urllib.parse import unquote
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.kinds._gltf_scene import MESHOPT, SceneReader
 from irsim.bridges.maps.source import ImportLimits, unusable
 from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
 from irsim.scenario.locate import why_outside
 
-__all__ = ["Beside", "check"]
+__all__ = ["open_scene"]
 
 _MAX_JSON = 128 * 1024**2
 _SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
 _COUNTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
-_PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression", "KHR_mesh_quantization")
 _DATA = re.compile(r"data:[^,]{0,200};base64,")
 
 
-class Beside:
-    """Gives a reader the checked files beside a ``.gltf``, and nothing else."""
-
-    def __init__(self, folder: Path, names: dict[str, Path]) -> None:
-        self.folder, self.names = folder, names
-
-    def get(self, name: str) -> bytes:
-        """Content of a file.
-
-        Raises:
-            FileNotFoundError: It is none of the files that were checked.
-        """
-        if name not in self.names:
-            raise FileNotFoundError(name)
-        return self.names[name].read_bytes()
-
-    def __getitem__(self, name: str) -> bytes:
-        return self.get(name)
-
-    def keys(self) -> list[str]:
-        """Names of the files."""
-        return list(self.names)
-
-    def namespaced(self, namespace: str) -> Beside:
-        """The same files: parts of a file have none of their own."""
-        return self
-
-
-def check(path: Path, limits: ImportLimits) -> Beside:
-    """Check a ``.glb`` or ``.gltf`` file.
+def open_scene(path: Path, limits: ImportLimits) -> SceneReader:
+    """Check a ``.glb`` or ``.gltf`` file, and read its buffers.
 
     Returns:
-        The files that a reader may read beside the file.
+        What reads its triangles.
 
     Raises:
-        BridgeError: Something in it does not fit, is compressed, or refers to other places.
+        BridgeError: Something in it does not fit, or refers to other places.
     """
-    content, binary = _content(path)
+    content, binary, start = _content(path)
     try:
-        return _checked(path, content, binary, limits)
+        names = _checked(path, content, binary, limits)
+        buffers = [_bytes(path, item, names, start) for item in content.get("buffers", [])]
     except BridgeError:
         raise
     except (AttributeError, IndexError, KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
         raise unusable(path, f"its description is damaged ({type(error).__name__}: {str(error)[:80]})") from None
+    return SceneReader(content, buffers, limits.triangles)
 
 
-def _content(path: Path) -> tuple[Any, int | None]:
-    """The description, and the size of the binary part of a ``.glb``; None for a ``.gltf``."""
-    size, binary = path.stat().st_size, None
+def _bytes(path: Path, item: dict[str, Any], names: dict[str, Path], start: int) -> bytes:
+    """Content of a buffer that was checked."""
+    uri, length = item.get("uri"), int(item["byteLength"])
+    if _is_fallback(item):
+        return b""
+    if uri is not None:
+        return binascii.a2b_base64(uri[data.end() :]) if (data := _DATA.match(uri)) else names[uri].read_bytes()
+    with path.open("rb") as file:
+        file.seek(start)
+        return file.read(length)
+
+
+def _is_fallback(item: dict[str, Any]) -> bool:
+    """Whether a buffer only stands for what is packed in another one."""
+    return "uri" not in item and any(name in item.get("extensions", {}) for name in MESHOPT)
+
+
+def _content(path: Path) -> tuple[Any, int | None, int]:
+    """The description, the size of the binary part of a ``.glb`` (None for a ``.gltf``), and where that part begins."""
+    size, binary, start = path.stat().st_size, None, 0
     with path.open("rb") as file:
         if path.suffix.lower() == ".glb":
             head = file.read(20)
@@ -104,20 +95,17 @@ def _content(path: Path) -> tuple[Any, int | None]:
         raise unusable(path, f"its description cannot be read: {error.message}") from None
     if not isinstance(content, dict):
         raise unusable(path, "its description is not a mapping")
-    return content, binary
+    return content, binary, start + 8
 
 
-def _checked(path: Path, content: dict[str, Any], binary: int | None, limits: ImportLimits) -> Beside:
-    used = [*content.get("extensionsRequired", []), *content.get("extensionsUsed", [])]
-    packed = [name for name in _PACKED if name in used]
-    if packed:
-        raise unusable(path, f"its geometry is packed with {packed[0]}", "export it without compression of meshes")
+def _checked(path: Path, content: dict[str, Any], binary: int | None, limits: ImportLimits) -> dict[str, Path]:
     names: dict[str, Path] = {}
     buffers = [_buffer(path, k, item, binary, names, limits) for k, item in enumerate(content.get("buffers", []))]
     views = []
     for k, view in enumerate(content.get("bufferViews", [])):
         begin, length = int(view.get("byteOffset", 0)), int(view["byteLength"])
-        if begin < 0 or length < 0 or begin + length > buffers[_index(view["buffer"])]:
+        packed = any(name in view.get("extensions", {}) for name in MESHOPT)
+        if begin < 0 or length < 0 or (not packed and begin + length > buffers[_index(view["buffer"])]):
             raise unusable(path, f"its part bufferViews[{k}] reaches beyond its buffer")
         views.append((length, int(view.get("byteStride", 0))))
     counts = [_accessor(path, k, item, views) for k, item in enumerate(content.get("accessors", []))]
@@ -136,7 +124,7 @@ def _checked(path: Path, content: dict[str, Any], binary: int | None, limits: Im
     if total > limits.triangles:
         what = f"it has {total:,} triangles, and at most {limits.triangles:,} are read"
         raise unusable(path, what, "simplify the mesh")
-    return Beside(path.parent, names)
+    return names
 
 
 def _buffer(
@@ -144,7 +132,9 @@ def _buffer(
 ) -> int:
     """Size of a buffer [bytes]."""
     length, uri = int(item["byteLength"]), item.get("uri")
-    if uri is None:
+    if _is_fallback(item):
+        have = length
+    elif uri is None:
         have = binary if binary is not None and k == 0 else 0
     elif (data := _DATA.match(uri)) is not None:
         try:
@@ -184,8 +174,10 @@ def _accessor(path: Path, k: int, item: dict[str, Any], views: list[tuple[int, i
     """Number of values of an accessor, all of which are there."""
     count, begin = int(item["count"]), int(item.get("byteOffset", 0))
     size = _SIZES[item["componentType"]] * _COUNTS[item["type"]]
-    if "sparse" in item or "bufferView" not in item:
-        raise unusable(path, f"its part accessors[{k}] is sparse", "export it without sparse accessors")
+    if "bufferView" not in item:
+        if count < 0 or begin < 0:
+            raise unusable(path, f"its part accessors[{k}] promises {count:,} values, and there is room for fewer")
+        return count
     length, stride = views[_index(item["bufferView"])]
     need = begin + (count - 1) * max(stride, size) + size if count else 0
     if count < 0 or begin < 0 or need > length:

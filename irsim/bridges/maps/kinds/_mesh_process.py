@@ -1,4 +1,4 @@
-"""The process that reads meshes: trimesh reads files whose headers have been checked."""
+"""The process that reads meshes: glTF by its description, other files by trimesh after their headers are checked."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import trimesh
 
 from irsim.bridges.maps.apart import Refused, serve
 from irsim.bridges.maps.grid import Triangles
-from irsim.bridges.maps.kinds import _gltf
+from irsim.bridges.maps.kinds._gltf import open_scene
 from irsim.bridges.maps.kinds._headers import check_ply, check_stl
 from irsim.bridges.maps.source import ImportLimits
 from irsim.common.extras import require
@@ -39,21 +39,26 @@ def load(path: Path, request: dict[str, Any]) -> tuple[Triangles, dict[str, Any]
         Refused: The file cannot be used.
     """
     limits = ImportLimits(bytes=int(request["bytes"]), triangles=int(request["triangles"]))
-    suffix, resolver = path.suffix.lower(), None
+    suffix = path.suffix.lower()
     said: dict[str, Any] = {"up": "y" if suffix in _Y_UP else "z", "unit": 1.0, "notes": []}
     if suffix in (".obj", ".dae") and path.stat().st_size > _MAX_TEXT:
         raise Refused(f"as text it may have at most {_MAX_TEXT:,} bytes", "convert it to .glb")
     if suffix in (".glb", ".gltf"):
-        resolver = _gltf.check(path, limits)
-    elif suffix == ".stl":
+        with np.errstate(all="ignore"):
+            parts = [_placed(*part) for part in open_scene(path, limits).triangles()]
+        return _joined(parts), said
+    if suffix == ".stl":
         check_stl(path)
     elif suffix == ".ply":
         check_ply(path)
     elif suffix == ".dae":
         require("mesh", "collada")
         said |= _collada(path)
-    parts = _read(path, suffix.lstrip("."), resolver, limits)
-    return np.concatenate(parts) if parts else np.zeros((0, 3, 3)), said
+    return _joined(_read(path, suffix.lstrip("."), limits)), said
+
+
+def _joined(parts: list[Triangles]) -> Triangles:
+    return np.concatenate(parts) if parts else np.zeros((0, 3, 3))
 
 
 def _collada(path: Path) -> dict[str, Any]:
@@ -72,12 +77,12 @@ def _collada(path: Path) -> dict[str, Any]:
     return {"up": up, "unit": meters}
 
 
-def _read(path: Path, suffix: str, resolver: Any, limits: ImportLimits) -> list[Triangles]:
+def _read(path: Path, suffix: str, limits: ImportLimits) -> list[Triangles]:
     """Corners of the triangles of each node."""
     result: list[Triangles] = []
     with np.errstate(all="ignore"):
         content = io.BytesIO(path.read_bytes())
-        scene = trimesh.load_scene(content, suffix, resolver, skip_materials=True, process=False)
+        scene = trimesh.load_scene(content, suffix, skip_materials=True, process=False)
         total = 0
         for node in sorted(scene.graph.nodes_geometry):
             matrix, name = scene.graph[node]

@@ -67,10 +67,9 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     areas = np.abs(_normals(triangles)).sum(axis=0)
     notes = list(said["notes"])
     axis = {"y": 1, "z": 2, "-y": 1}[up]
-    other = 3 - axis
-    if options.up == "auto" and areas[other] > _STEEP * areas[axis]:
-        name = "xyz"[other]
-        notes.append(f"most surfaces face along {name}: if {name} points up, give --up {name}")
+    if options.up == "auto" and areas[3 - axis] > _STEEP * areas[axis]:
+        usual, up = up, "xyz"[3 - axis]
+        notes.append(f"most surfaces face along {up}, which is taken to point up: if {usual} does, give --up {usual}")
     if up == "y":
         triangles = np.stack([triangles[..., 0], -triangles[..., 2], triangles[..., 1]], axis=-1)
     elif up == "-y":
@@ -91,7 +90,9 @@ def _checked(path: Path, triangles: Triangles) -> Triangles:
         raise unusable(path, "it has no triangles", "export the scene with its meshes")
     wrong = ~np.isfinite(triangles).all(axis=(1, 2))
     if wrong.any():
-        raise unusable(path, f"{int(wrong.sum()):,} of its {len(wrong):,} triangles have corners that are not numbers")
+        raise unusable(
+            path, f"{int(wrong.sum()):,} of its {len(triangles):,} triangles have corners that are not numbers"
+        )
     return triangles
 
 

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import axes_of, inverse
+from irsim.bridges.maps.apart import read_apart
 from irsim.bridges.maps.grid import Grid
 from irsim.bridges.maps.occupancy import cropped
 from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.sidecar import scene_transform
-from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy
+from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy, unusable
 from irsim.bridges.splats.occupancy import Plan, PlanOptions, find_floor, ground_plan, level_shares
-from irsim.bridges.splats.reading import read_splats
+from irsim.bridges.splats.reading import read_header, read_splats
+from irsim.bridges.splats.splats import Splats, moved
 from irsim.common.arrays import Floats
+from irsim.common.extras import require
 
-__all__ = ["KIND"]
+__all__ = ["KIND", "unpacked_splats"]
 
 _FRAMES = {"z": "irsim", "y": "habitat_yup", "-y": "colmap"}
 _SMALLEST_AREA_M2 = 0.5
@@ -34,7 +38,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     """
     if options.level:
         raise BridgeError("bridge-file", "a map of splats has one level, 0", "give its floor with --height instead")
-    splats = read_splats(path)
+    splats = unpacked_splats(path, limits)
     up = "z" if options.up == "auto" else options.up
     frame, unit = _FRAMES[up], options.meters_per_unit or 1.0
     notes = []
@@ -62,6 +66,31 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     areas = [round(float(cells) * grid.resolution**2, 4) for cells in regions[:_MAX_REGIONS]]
     result = Occupancy(values, grid, frame, height, unit, 0, [(height, areas[0], False)], areas, kept, notes=notes)
     return result if options.bounds is not None else cropped(result)
+
+
+def unpacked_splats(path: Path, limits: ImportLimits) -> Splats:
+    """The splats of a file; those of packed ones are unpacked in a process of its own.
+
+    Raises:
+        BridgeError: The file is damaged, or no library reads it.
+        ExtraError: The library that reads it is missing.
+    """
+    suffix = path.suffix.lower().lstrip(".")
+    if suffix == "ply" and read_header(path).element("chunk") is None:
+        return read_splats(path)
+    if suffix == "lcc":
+        fix = "convert it: npx @playcanvas/splat-transform scene.lcc scene.ply"
+        raise unusable(path, "no library reads its format", fix)
+    require("mesh", "gaussforge")
+    form = "compressed.ply" if suffix == "ply" else suffix
+    content, _ = read_apart(path, f"{__package__}._splat_process", limits, {"format": form})
+    with tempfile.TemporaryDirectory(prefix="irsim-splats-") as folder:
+        plain = Path(folder, path.stem[:100] + ".ply")
+        plain.write_bytes(content.tobytes())
+        splats = read_splats(plain)
+    return (
+        moved(splats, np.diag([1.0, -1.0, -1.0, 1.0])) if suffix == "spz" else splats
+    )  # whose y and z point backwards
 
 
 def _kept(plan: Plan, grid: Grid, options: ImportOptions) -> tuple[Floats, list[int], int]:
