@@ -13,7 +13,6 @@ KNOWN = {
     "irsim/benchmarks/cluster.py": PEER,
     "irsim/benchmarks/pool.py": PEER,
     "irsim/bridges/export/formats/npz.py": OWN,
-    "irsim/bridges/maps/kinds/_usd_process.py": PEER,
     "irsim/bridges/maps/apart.py": PEER,
     "irsim/bridges/ros/guard.py": PEER,
     "irsim/common/archives.py": "the reader of archives and arrays",
