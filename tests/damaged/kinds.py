@@ -21,7 +21,7 @@ from irsim.benchmarks.suite import load_suite
 from irsim.benchmarks.suite_scenarios import expand
 from irsim.bridges.json_lines.bridge import JsonLinesBridge
 from irsim.bridges.maps.importing import import_map
-from irsim.bridges.maps.kinds._gltf import open_scene
+from irsim.bridges.maps.kinds._gltf import open_scene as open_gltf
 from irsim.bridges.maps.sidecar import read_sidecar
 from irsim.bridges.maps.source import ImportLimits
 from irsim.bridges.pedestrians.importing import import_pedestrians
@@ -275,7 +275,7 @@ KINDS: Mapping[str, Kind] = {
     "navmesh": Kind(_made(lambda file: file.write_bytes(_mesh_set()), "room.navmesh"), _import, share=2),
     "roads": Kind(_made(lambda file: file.write_text(_ROADS), "town.xodr"), _import, share=4),
     "gltf": Kind(_made(lambda file: scenes.write_glb(file, scenes.box([0, 0, 0], [1, 1, 1])), "scene.glb"),
-                 lambda file, draw: file.is_file() and list(open_scene(file, _IMPORT).triangles())),
+                 lambda file, draw: file.is_file() and open_gltf(file, _IMPORT)),
     "splats": Kind(_splats("binary_little_endian"), lambda file, draw: read_splats(file, harmonics=True)),
     "splats-text": Kind(_splats("ascii"), lambda file, draw: read_splats(file)),
     "sidecar": Kind(_sidecar, lambda file, draw: read_sidecar(file)),
