@@ -326,3 +326,20 @@ def test_the_command() -> None:
     assert "interpolation: cubic" in Path("scene.yaml").read_text()
     refused = CliRunner().invoke(bridge_app, [*arguments, "--force", "--crop", "1,2,3"])
     assert refused.exit_code == 2
+
+
+@pytest.mark.foreign
+@pytest.mark.parametrize(
+    ("name", "people", "unknown"),
+    [
+        ("eth_obsmat", 360, 0),
+        ("hotel_obsmat", 389, 0),
+        ("trajectron_zara01", 148, 0),
+        ("trajnet_test_zara01", None, 1),
+    ],
+)
+def test_recordings_of_others(foreign: Path, name: str, people: int | None, unknown: int) -> None:
+    imported = import_pedestrians(foreign / "pedestrians" / f"{name}.txt", "scene.yaml")
+    assert people in (imported.pedestrians, None)
+    assert any("rows without a place (?)" in note for note in imported.notes) == bool(unknown)
+    assert [one.code for one in irsim.validate("scene.yaml").findings if one.code == "stacked"] == []

@@ -311,6 +311,8 @@ def import_pedestrians(
         notes.append(f"the recording ends before the only window of the suite, which is {made.length:g} s long")
     if fps is None and recording.format != "vsp":
         notes.append(f"{rate:g} frames per second are assumed, so that 0.4 s are between rows; --fps says otherwise")
+    if recording.unknown:
+        notes.append(f"{recording.unknown} rows without a place (?) were left out")
     if left_out:
         notes.append(f"{left_out} with a single row in the window were left out")
     longest, name = max((float(np.diff(track.times).max()), track.name) for track in tracks)

@@ -65,12 +65,14 @@ class Recording:
         frame: (N,) number of the picture.
         person: (N,) id of the person; of splines, their number in the file.
         place: (N, 2) x, y: [m], or pixels from the middle of the picture for ``vsp``.
+        unknown: Number of rows with ``?``, as test files of TrajNet have them, which are left out.
     """
 
     format: FormatName
     frame: Floats
     person: Floats
     place: Floats
+    unknown: int = 0
 
 
 def read_recording(path: Path, form: FormatName | None = None) -> Recording:
@@ -86,12 +88,12 @@ def read_recording(path: Path, form: FormatName | None = None) -> Recording:
     lines = _lines(path)
     if form is None and path.suffix.lower() == ".vsp":
         form = "vsp"
-    rows = _read_splines(path, lines) if form == "vsp" else None
+    rows, unknown = (_read_splines(path, lines) if form == "vsp" else None), 0
     if rows is None:
-        form, rows = _read_table(path, lines, form)
+        form, rows, unknown = _read_table(path, lines, form)
     assert form is not None
     table = np.frombuffer(rows, dtype=np.float64).reshape(-1, 4)
-    return Recording(form, table[:, 0], table[:, 1], table[:, 2:])
+    return Recording(form, table[:, 0], table[:, 1], table[:, 2:], unknown)
 
 
 def read_homography(path: Path) -> Floats:
@@ -137,9 +139,12 @@ def _lines(path: Path) -> Iterator[tuple[int, str]]:
         raise BridgeError("bridge-file", what, "name a file of recorded pedestrians") from None
 
 
-def _read_table(path: Path, lines: Iterator[tuple[int, str]], form: FormatName | None) -> tuple[FormatName, Numbers]:
+def _read_table(
+    path: Path, lines: Iterator[tuple[int, str]], form: FormatName | None
+) -> tuple[FormatName, Numbers, int]:
+    """Format and rows of a table, and how many rows say nothing of a place."""
     rows: Numbers = array("d")
-    first = True
+    first, unknown = True, 0
     for number, text in lines:
         header, first = first and _is_header(_fields(text.lower())), False
         if header:
@@ -150,13 +155,16 @@ def _read_table(path: Path, lines: Iterator[tuple[int, str]], form: FormatName |
                 what = f"has {count} columns, and files of pedestrians have 4 or 8"
                 raise _bad(path, number, what, "write 'frame id x y' or 'frame id x z y vx vz vy'")
             form = _COLUMNS[count]
+        if "?" in _fields(text):
+            unknown += 1
+            continue
         values = _numbers(path, number, text, _EXPECTED[form], 4 if form == "trajnet" else 8)
         x, y = (values[column] for column in _PLACES[form])
         rows.extend(_row(path, number, values[0], values[1], x, y))
         _check_count(path, number, rows)
     if form is None:
         raise BridgeError("bridge-file", f"{_name(path)} is empty", "name a file of recorded pedestrians")
-    return form, rows
+    return form, rows, unknown
 
 
 def _read_splines(path: Path, lines: Iterator[tuple[int, str]]) -> Numbers:
