@@ -282,7 +282,7 @@ class SamplingPlanner(PlannerOptions):
     expand_dis: Annotated[Meters, Field(gt=0)] = 1.0
     """Longest extension of the tree."""
     path_resolution: Annotated[Meters, Field(gt=0)] = 0.25
-    """Extensions end at its multiples; collisions are checked all along."""
+    """Extensions end at its multiples, checked all along."""
     goal_sample_rate: Annotated[Number, Field(ge=0, le=100)] = 5.0
     """Share of samples placed at the goal, in percent."""
     max_iter: Annotated[Count, Field(le=100_000)] = 500
