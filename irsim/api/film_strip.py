@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING
 
 from irsim.api.overlays import Overlay, additions, plot_keys, requested_plans
@@ -43,6 +43,7 @@ def draw_strip(
     region: Sequence[float] | None = None,
     progress: Progress | None = None,
     may_be_lost: bool = False,
+    move: Callable[[int], None] | None = None,
 ) -> bytes:
     """Draw moments of an episode as one PNG, and advance the environment to the last of them.
 
@@ -53,6 +54,7 @@ def draw_strip(
         overlays: Names of the things to show besides bodies.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         progress: Callback ``(steps_done, steps_total)``.
+        move: Moves the environment to a step; default: it is stepped.
         may_be_lost: Whether the strip ends early where the policy of another process is lost, instead of an error.
 
     Raises:
@@ -64,7 +66,10 @@ def draw_strip(
     for moment in moments:
         before, lost = int(env.simulation.count[0]), False
         try:
-            advance(env, moment - before, None, until_done=False)
+            if move is not None:
+                move(moment)
+            else:
+                advance(env, moment - before, None, until_done=False)
         except PolicyLostError:
             if not may_be_lost:
                 raise

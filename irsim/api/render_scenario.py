@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from irsim.policies.catalog import PolicySource
     from irsim.results.picture import SceneTable
 
-__all__ = ["animate", "render"]
+__all__ = ["animate", "render", "write_sheet"]
 
 
 def render(
@@ -108,7 +108,7 @@ def render(
             policy=driver,
             driven=driven,
         )
-        return _write_sheet(sheet, target, scene_table(scenario, sheet.seed, driven if driver is not None else None))
+        return write_sheet(sheet, target, scene_table(scenario, sheet.seed, driven if driver is not None else None))
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR", policy=driver)
     if region is not None:
         env._env_plot.set_region(region)
@@ -142,7 +142,7 @@ def render(
     return result
 
 
-def _write_sheet(sheet: SnapshotResult, target: Path, table: SceneTable) -> RenderResult:
+def write_sheet(sheet: SnapshotResult, target: Path, table: SceneTable) -> RenderResult:
     """Write a picture of several moments."""
     with replacing(target) as temporary:
         temporary.write_bytes(sheet.png)
@@ -164,17 +164,28 @@ def _write_sheet(sheet: SnapshotResult, target: Path, table: SceneTable) -> Rend
 
 
 def animate(
-    env: Env, steps: int, save: Path | None, progress: Progress | None, recorder: Recorder | None = None
+    env: Env,
+    steps: int,
+    save: Path | None,
+    progress: Progress | None,
+    recorder: Recorder | None = None,
+    move: Callable[[int], None] | None = None,
 ) -> list[str]:
-    """Run and show an environment, and write an animation of it; return the file that was written, if any."""
+    """Run and show an environment, and write an animation of it; return the file that was written, if any.
+
+    ``move`` moves it to a step instead, as a recorded run does, which goes on to the last step whatever happens.
+    """
     env.save_ani = save is not None
     if save is not None:
         env.ani_kwargs["suffix"] = save.suffix  # determines how many colours a frame keeps
     env.render()
     for step in range(steps):
-        if env.done():
+        if move is not None:
+            move(step + 1)
+        elif env.done():
             break
-        env.step()
+        else:
+            env.step()
         if recorder is not None:
             recorder.write_if_due()
         env.render(env.step_time)

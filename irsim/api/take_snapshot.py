@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -186,6 +186,7 @@ def snapshot_of_env(
     warnings: list[Finding],
     reproduce: str,
     progress: Progress | None = None,
+    move: Callable[[int], None] | None = None,
 ) -> SnapshotResult:
     """Like :func:`snapshot`, for an environment in its present state.
 
@@ -200,11 +201,14 @@ def snapshot_of_env(
         warnings: Warnings about the scenario, for the result.
         reproduce: Command that draws the same picture, for the result.
         progress: Callback ``(steps_done, steps_total)``.
+        move: Moves the environment to a step of a strip; default: it is stepped.
     """
     scenario = env.scenario
     png = b""
     if moments is not None and draw:
-        png = draw_strip(env, moments, size=size, overlays=overlays, region=region, progress=progress)
+        png = draw_strip(env, moments, size=size, overlays=overlays, region=region, progress=progress, move=move)
+    elif moments is not None and move is not None:
+        move(moments[-1])
     elif moments is not None:
         advance(env, moments[-1], progress, until_done=False)
     ways = requested_plans(env, overlays)

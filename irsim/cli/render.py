@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.text import Text
 
 from irsim import api
 from irsim.api.overlays import OVERLAYS
+from irsim.api.render_run import render_run
 from irsim.cli.findings import import_user_modules, limits_for, print_findings
 from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Strict
 from irsim.cli.output import console, print_json, progress
 from irsim.common.files import check_suffix
+from irsim.diagnostics.errors import InputError
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, PICTURE_FORMATS
 from irsim.results.picture import view_message
+from irsim.runs.store import is_run
 from irsim.validation.scene_text import scene_lines
 
 __all__ = ["render"]
@@ -64,28 +67,28 @@ def render(
     imports: Imports = None,
     max_objects: MaxObjects = None,
 ) -> None:
-    """Draw a scenario as a picture or an animation, depending on the suffix of the file.
+    """Draw a scenario, or a recorded run (its id, its folder or `last`), as a picture or an animation.
+
+    The suffix of the file decides which. A run is drawn as it was recorded, with what a policy or a bridge did in it;
+    a picture without `--steps` shows its end.
 
     Also print a table of its objects: drives, footprints, places, and the ranges of what is random.
     """
     import_user_modules(imports)
     with progress("drawing") as report:
         check_suffix(out, [*PICTURE_FORMATS, *MOVING_SUFFIXES])
-        result = api.render(
-            file,
-            out,
-            policy=policy,
-            seed=seed,
-            steps=steps,
-            size=size,
-            region=region,
-            strip=strip,
-            overlays=None if overlays is None else overlays.split(","),
-            strict=strict,
-            imports=imports or (),
-            limits=limits_for(max_objects),
-            progress=report,
-        )
+        shown_as: dict[str, Any] = {
+            "steps": steps, "size": size, "region": region, "strip": strip, "progress": report,
+            "overlays": None if overlays is None else overlays.split(","), "limits": limits_for(max_objects),
+        }  # fmt: skip
+        if is_run(file):
+            given = {"--policy": policy, "--seed": seed, "--strict": strict, "--import": imports}
+            if extra := [name for name, value in given.items() if value]:
+                what = f"{', '.join(extra)} cannot change the recorded run {str(file)!r}"
+                raise InputError(what, f"leave out {extra[0]}, or name the scenario")
+            result = render_run(file, out, **shown_as)
+        else:
+            result = api.render(file, out, policy=policy, seed=seed, strict=strict, imports=imports or (), **shown_as)
     if json_output:
         print_json(result)
         return

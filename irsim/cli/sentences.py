@@ -18,7 +18,7 @@ SENTENCES = {
     "train": "Train a policy for a task; needs the extra `learn`. Success is measured on seeds that are not trained on.",
     "export-policy": "Make a policy file of a training, with its model card and curve; needs the extra `learn`.",
     "convert": "Make a policy file of weights that others trained with PyTorch; no code of their file runs, and no torch.",
-    "render": "Draw a scenario as a picture or an animation, depending on the suffix of the file.",
+    "render": "Draw a scenario, or a recorded run (its id, its folder or `last`), as a picture or an animation.",
     "describe": "Explain a key, a component, a template, a metric or an error code. Without a topic, list all topics.",
     "schema": "Write the JSON Schemas of scenarios, suites, tasks and networks, or connect a scenario file to its schema.",
     "map": "Import maps from other worlds into scenarios: meshes, navigation meshes, USD, roads, ROS; and export maps.",

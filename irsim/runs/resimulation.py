@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -21,7 +21,7 @@ from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
 
-__all__ = ["check_reproduced", "has_modules", "initial_scene", "resimulate", "scenario_of", "step_of"]
+__all__ = ["check_reproduced", "follow_record", "has_modules", "initial_scene", "resimulate", "scenario_of", "step_of"]
 
 
 _MAP = re.compile(r"map-\d{1,3}(\.\w{1,10})?")
@@ -76,7 +76,7 @@ def resimulate(
     wanted = step_of(run, step)
     env = Env(scenario_of(run, limits), seed=int(run.meta["seed"]), headless=True, log_level="ERROR")
     if has_modules(run):
-        _move_as_recorded(run, env, wanted)
+        follow_record(run, env)(wanted)
         return env
     advance(env, wanted, progress, until_done=False)
     check_reproduced(run, env)
@@ -91,16 +91,31 @@ def has_modules(run: Run) -> bool:
     return any(run.options.get(part) for part in ("imports", "policy", "bridges"))
 
 
-def _move_as_recorded(run: Run, env: Env, step: int) -> None:
-    """Move all objects as recorded, step by step, so that sensors measure and trails grow as in the run."""
+def follow_record(run: Run, env: Env) -> Callable[[int], None]:
+    """A function that moves the objects of an environment as recorded, up to a step.
+
+    It goes step by step, so that sensors measure and trails grow as in the run.
+
+    Args:
+        run: The recorded run.
+        env: An environment of its scenario, at the start.
+
+    Raises:
+        RunError: The scenario has other objects now.
+    """
     trace, simulation = run.trace(), env.simulation
     if trace.pose[0].shape != simulation.pose.shape:
         raise RunError("unreadable-run", f"the scenario of run {run.id} has other objects now", "run it again")
-    for row in range(1, step - int(trace.step[0]) + 1):
-        simulation.pose[:], simulation.control[:] = trace.pose[row], trace.control[row]
-        simulation.step_external()
-        simulation.goal[:], simulation.stopped[:] = trace.goal[row], trace.stopped[row]
-        simulation.arrived[:], simulation.collided[:] = trace.arrived[row], trace.collided[row]
+    start = int(trace.step[0])
+
+    def move(step: int) -> None:
+        for row in range(int(simulation.count[0]) - start + 1, step - start + 1):
+            simulation.pose[:], simulation.control[:] = trace.pose[row], trace.control[row]
+            simulation.step_external()
+            simulation.goal[:], simulation.stopped[:] = trace.goal[row], trace.stopped[row]
+            simulation.arrived[:], simulation.collided[:] = trace.arrived[row], trace.collided[row]
+
+    return move
 
 
 def step_of(run: Run, step: int | None) -> int:

@@ -32,6 +32,7 @@ __all__ = [
     "SCENARIO_FILE",
     "Status",
     "find_run",
+    "is_run",
     "make_run_folder",
     "mark_cancelled",
     "mark_used",
@@ -192,6 +193,13 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
     fix = f"recent ones are {', '.join(recent)}" if recent else "there are no runs here"
     how = "; `irsim run FILE --record` records one" if not recent and workspace is None else ""
     raise RunError("unknown-run", f"there is no run {clean(name)!r}", f"{fix}; {_EXPIRY}{how}")
+
+
+def is_run(name: str | Path) -> bool:
+    """Whether a name is that of a run here: ``last``, an id, or a folder; the name of a file is not."""
+    if str(name) == "last" or (Path(name) / META).is_file():
+        return not Path(name).is_file()
+    return bool(ID.fullmatch(str(name))) and (runs_folder() / str(name) / META).is_file()
 
 
 def mark_used(folder: str | Path) -> None:

@@ -174,22 +174,20 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.api.film_strip import moments_of
     from irsim.api.take_snapshot import snapshot_of_env
     from irsim.runs import open_run
-    from irsim.runs.files import RunError
-    from irsim.runs.resimulation import check_reproduced, has_modules, resimulate, step_of
+    from irsim.runs.resimulation import check_reproduced, follow_record, has_modules, resimulate, step_of
 
     arguments, moments = job["arguments"], None
     run = open_run(arguments["run_id"], job["workspace"])
     if arguments["strip"] is not None:
-        if has_modules(run):
-            what = "a run with user modules is never simulated again, which a strip would need"
-            raise RunError("bad-argument", what, "draw one step at a time", where="strip")
         moments = moments_of(step_of(run, arguments["steps"] or None), arguments["strip"])
     env = resimulate(run, arguments["steps"] if moments is None else 0, limits=_limits(job), progress=progress)
     if arguments["draw"]:
         _load_elsewhere("irsim.rendering.snapshot")
     shown = {key: arguments[key] for key in ("size", "overlays", "region", "draw")}
-    source = run.meta.get("scenario")
-    result = snapshot_of_env(env, source, **shown, moments=moments, warnings=[], reproduce="", progress=progress)
+    source, move = run.meta.get("scenario"), follow_record(run, env) if has_modules(run) else None
+    result = snapshot_of_env(
+        env, source, **shown, moments=moments, warnings=[], reproduce="", progress=progress, move=move
+    )
     if not has_modules(run):
         check_reproduced(run, env)
     return _picture(result)
