@@ -302,6 +302,8 @@ def nightly(session: nox.Session) -> None:
     timed(session, "tests that rotate", "pytest", *rotating, env={"IRSIM_TESTS": "thorough"})
     damaged = ("-m", "slow", "-n", "2", "tests/damaged", "--durations", "5")
     timed(session, "10,000 damages of each kind of file", "pytest", *damaged, env={"IRSIM_NIGHTLY": "1"})
+    raced = ("-m", "slow", "-n", "2", "tests/mcp/test_links.py")
+    timed(session, "2,000 races with links", "pytest", *raced, env={"IRSIM_NIGHTLY": "1"})
     session.notify("neupan")
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import functools
 import os
 import posix
+import shutil
 import sys
 import threading
 from collections.abc import Iterator
@@ -43,6 +44,16 @@ class Swap:
                 posix.rename(self.place, self.aside)
             posix.symlink(self.double, self.place)
         self.linked = not self.linked
+
+    def restore(self) -> None:
+        """Put back what was there, in place of what a program has made meanwhile."""
+        if os.path.islink(self.place):
+            posix.unlink(self.place)
+        if os.path.lexists(self.aside):
+            if os.path.isdir(self.place):
+                shutil.rmtree(self.place)
+            posix.rename(self.aside, self.place)
+        self.linked = False
 
 
 _EVENTS = ("open", "os.listdir", "os.scandir", "os.mkdir", "os.rename", "os.remove", "os.rmdir", "os.utime", "os.link")
@@ -81,8 +92,7 @@ def swapping(swap: Swap, *, first: bool = False) -> Iterator[None]:
         yield
     finally:
         _active = None
-        if swap.linked:
-            swap()
+        swap.restore()
 
 
 class Double:

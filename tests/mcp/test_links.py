@@ -7,8 +7,11 @@ of the workspace for a link to its double outside before each call that opens, m
 from __future__ import annotations
 
 import json
+import os
+import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -20,6 +23,7 @@ from irsim.policies.networks import save_network
 from irsim_mcp import job
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
+from tests.mcp import swapping as swapper
 from tests.mcp.conftest import ROOM
 from tests.mcp.swapping import Double, Swap, swapping
 from tests.policies.networks.examples import go_to_goal
@@ -134,3 +138,33 @@ def test_a_link_that_comes_and_goes_leads_nowhere(place: Place, call: str, first
             seen.append((what, sorted(place.double.changes()), swap.count))
             place.double.reset()
     assert not seen
+
+
+@contextmanager
+def race(swap: Swap) -> Iterator[None]:
+    """A process that swaps as fast as it can."""
+    command = [sys.executable, "-IS", swapper.__file__, swap.place, swap.aside, swap.double]
+    racer = subprocess.Popen(command, stdin=subprocess.PIPE)
+    try:
+        yield
+    finally:
+        racer.kill()
+        racer.communicate()
+        swap.restore()
+
+
+def races(place: Place, call: str, number: int) -> None:
+    """Calls during which another process swaps, in equal parts, each of the places."""
+    for what in SWAPPED:
+        task, arguments = CALLS[call](place)
+        with race(swap_of(place, what)):
+            answers = [place.do(task, **arguments) for _ in range(-(-number // len(SWAPPED)))]
+        assert not [one for one in answers if "spied" in one or one.startswith("internal-error")], what
+        assert not place.double.changes(), what
+
+
+@pytest.mark.slow(15)
+@pytest.mark.rotates(3)
+@pytest.mark.parametrize("call", ["compare", "inspect", "write"])
+def test_races(place: Place, call: str) -> None:
+    races(place, call, 2000 if os.environ.get("IRSIM_NIGHTLY") else 200)
