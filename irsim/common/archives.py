@@ -6,6 +6,7 @@ import io
 import math
 import struct
 import tokenize
+import warnings
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -165,7 +166,9 @@ def read_array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, kinds: Sequence
     readers: dict[Any, Any] = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
     if version not in readers:
         raise ContentError("unknown version of .npy", ".".join(map(str, version)), "1.0, 2.0", place=place)
-    shape, by_columns, dtype = readers[version](stream, max_header_size=_HEADER_BYTES)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about escape sequences of broken headers
+        shape, by_columns, dtype = readers[version](stream, max_header_size=_HEADER_BYTES)
     if dtype.hasobject or dtype.str[1:] not in kinds:
         names = ", ".join(np.dtype(kind).name for kind in kinds)
         raise ContentError("arrays hold plain numbers", clean(str(dtype), 60), names, place=place)

@@ -47,7 +47,7 @@ def test_many_damages(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 
 def try_ways(name: str, folder: Path, numbers: range) -> None:
-    """Read an example in each of some ways of being damaged, and what is no file."""
+    """Read an example in each of some ways of being damaged, a missing file and a folder."""
     kind = KINDS[name]
     file = kind.make(folder)
     content, before = file.read_bytes(), memory()
