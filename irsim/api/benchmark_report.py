@@ -20,7 +20,7 @@ from irsim.benchmarks.report.page import Shown, page
 from irsim.benchmarks.report.rows import policy_labels, worst_episodes
 from irsim.benchmarks.report.table import MISSING, TABLE, has_tables, write_table
 from irsim.benchmarks.stored import read_plan
-from irsim.common.files import write_atomically
+from irsim.common.files import code_of, write_atomically
 from irsim.diagnostics.errors import ScenarioError
 from irsim.runs.files import RunError
 from irsim.runs.replay.export import replay
@@ -77,7 +77,8 @@ def write_report(result: BenchmarkResult, folder: Path) -> Report:
         write_atomically(folder / MARKDOWN, markdown(result, notes))
         write_atomically(folder / PAGE, page(result, shown, notes))
     except OSError as error:
-        raise RunError("not-writable", f"{folder}: {error.strerror}", "make room, then give --resume") from None
+        code = code_of(error, "not-writable")
+        raise RunError(code, f"{folder}: {error.strerror}", "make room, then give --resume") from None
     return Report(folder / PAGE, notes)
 
 

@@ -19,7 +19,7 @@ from irsim.benchmarks.comparison import benchmark
 from irsim.benchmarks.log import in_order
 from irsim.benchmarks.plan import Plan, map_hashes
 from irsim.benchmarks.timing import was_timed
-from irsim.common.files import TEMPORARY, write_atomically
+from irsim.common.files import TEMPORARY, code_of, write_atomically
 from irsim.common.installed import version
 from irsim.common.records import ContentError, read_json
 from irsim.episodes.episode import Progress
@@ -198,7 +198,8 @@ def _make(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise RunError("not-writable", f"{folder}: {error.strerror}", "give another folder with -o") from None
+        code = code_of(error, "not-writable")
+        raise RunError(code, f"{folder}: {error.strerror}", "give another folder with -o") from None
 
 
 @contextmanager
@@ -256,9 +257,8 @@ def _write(path: Path, text: str) -> None:
     try:
         write_atomically(path, text)
     except OSError as error:
-        raise RunError(
-            "not-writable", f"{path} cannot be written: {error.strerror}", "make room, then give --resume"
-        ) from None
+        what = f"{path} cannot be written: {error.strerror}"
+        raise RunError(code_of(error, "not-writable"), what, "make room, then give --resume") from None
 
 
 def result_of_plan(plan: Plan, result: BenchmarkResult) -> BenchmarkResult:

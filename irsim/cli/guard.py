@@ -17,6 +17,7 @@ from typing import Any, NoReturn, ParamSpec, TypeVar
 import typer
 
 from irsim.cli.output import print_error, silence_stdout
+from irsim.common.files import is_disk_full
 from irsim.common.text import clean
 from irsim.diagnostics.errors import IrsimError, ScenarioError, ScenarioNotFoundError
 
@@ -85,7 +86,7 @@ def _end(number: int, frame: Any) -> NoReturn:
     raise SystemExit(128 + number)
 
 
-_FAILURES = frozenset({"bridge-lost", "file-access", "no-cluster", "not-writable", "worker-failed"})
+_FAILURES = frozenset({"bridge-lost", "disk-full", "file-access", "no-cluster", "not-writable", "worker-failed"})
 """Codes of errors that are not about the input: the same command may succeed later."""
 _HANDLED_BY_TYPER = (typer.Exit, typer.Abort, typer.BadParameter)
 
@@ -126,6 +127,9 @@ def _describe(error: BaseException) -> tuple[str, str, int]:
         return str(code), text.removeprefix(f"{code}: "), FAILED if code in _FAILURES else INVALID
     if isinstance(error, MemoryError):
         return "out-of-memory", "not enough memory.", FAILED
+    if is_disk_full(error):
+        where = f" ({clean(name, 200)})" if (name := getattr(error, "filename", None)) else ""
+        return "disk-full", f"no space is left on the disk{where}. Free some, or write to another disk.", FAILED
     if isinstance(error, OSError):
         where = f" ({clean(error.filename, 200)})" if error.filename else ""
         return "file-access", f"{error.strerror or error}{where}", FAILED

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from collections.abc import Iterable, Iterator
@@ -20,7 +21,9 @@ __all__ = [
     "TargetError",
     "check_new",
     "check_suffix",
+    "code_of",
     "create_bytes",
+    "is_disk_full",
     "make_folder_of",
     "new_folder",
     "replace_bytes",
@@ -35,6 +38,26 @@ Buffer: TypeAlias = bytes | memoryview
 TEMPORARY = ".new-"
 """How names of temporary files begin."""
 _NEW = os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0)
+
+
+_FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)})
+_FULL_WORDS = ("no space left on device", "disk is full", "quota exceeded", "io_enospc")
+"""What libraries in C say instead of an error number."""
+
+
+def is_disk_full(error: BaseException | None) -> bool:
+    """Whether an error, or one that led to it, says that the disk has no space left."""
+    while error is not None:
+        text = str(error).lower()
+        if getattr(error, "errno", None) in _FULL or any(words in text for words in _FULL_WORDS):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
+def code_of(error: BaseException, other: str = "file-access") -> str:
+    """The code for a file that cannot be written: ``disk-full``, or another one."""
+    return "disk-full" if is_disk_full(error) else other
 
 
 class TargetError(CodedError, ValueError):
@@ -188,20 +211,38 @@ def write_all(descriptor: int, *parts: Buffer) -> None:
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
+def replacing(path: Path, *, overwrite: bool = True) -> Iterator[Path]:
     """Yield a temporary file beside ``path``, which replaces it if the block succeeds and is deleted otherwise.
 
     This is for encoders that open files by name; the temporary file has the suffix of the path. The folder is made if
     it does not exist. In a folder that is held, the encoder's file is elsewhere and is copied.
+
+    Raises:
+        TargetError: Without ``overwrite``, the file exists now, because another program has written it meanwhile.
     """
     make_folder_of(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
     try:
         with apart(temporary) as written:
             yield written
-        os.replace(temporary, path)
+        if overwrite:
+            os.replace(temporary, path)
+        else:
+            _name(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _name(temporary: Path, path: Path) -> None:
+    """Give a file its name; of two programs that do so at once, one gets the error."""
+    try:
+        os.link(temporary, path)
+    except FileExistsError:
+        check_new(path, overwrite=False)
+        raise
+    except OSError:  # a file system without links
+        check_new(path, overwrite=False)
+        os.replace(temporary, path)
 
 
 @contextmanager

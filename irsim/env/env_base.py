@@ -209,6 +209,9 @@ class Env(EnvState):
     def __reduce_ex__(self, protocol: object) -> tuple[Any, ...]:
         return snapshots.reduce(self)
 
+    def __copy__(self) -> Env:
+        return snapshots.copy_env(self, {})  # type: ignore[no-any-return]
+
     def __deepcopy__(self, memo: dict[int, Any]) -> Env:
         return snapshots.copy_env(self, memo)  # type: ignore[no-any-return]
 

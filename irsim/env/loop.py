@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 from irsim.common.log import LEVELS
 from irsim.env.live import drive_by_keyboard
@@ -29,7 +29,8 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
             first one.
 
     Raises:
-        ValueError: A target does not exist, a vector has the wrong size, or an action is given in external mode.
+        ValueError: A target does not exist, a vector has the wrong size, an action is given in external mode, or there
+            are more actions than objects in a ``strict`` environment.
     """
     use(env)
     if (env.pause_flag or env.quit_flag or env.debug_flag or env._ended) and _held(env):
@@ -43,13 +44,19 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
         simulation.step_external()
     else:
         if action is not None:
-            for view, control in assign_actions(env._objects, action, action_id, env.logger.warning_once):
+            surplus = _refuse if env._strict else env.logger.warning_once
+            for view, control in assign_actions(env._objects, action, action_id, surplus):
                 if simulation.impose(view.row, control) and view.id not in env._limit_warnings:
                     _report_limits(env, view, control)
         if env.world_param.control_mode == "keyboard":
             drive_by_keyboard(env)
         simulation.step()
     _after_step(env)
+
+
+def _refuse(message: str) -> NoReturn:
+    """Refuse surplus actions in a strict environment."""
+    raise ValueError(message)
 
 
 def _report_limits(env: EnvState, view: Any, control: Sequence[float]) -> None:

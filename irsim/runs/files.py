@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from irsim.common.files import Buffer, create_bytes, replace_bytes, write_all
+from irsim.common.files import Buffer, code_of, create_bytes, replace_bytes, write_all
 from irsim.common.records import MAX_RECORD_BYTES, ContentError, read_json, read_text
 from irsim.diagnostics.errors import CodedError
 
@@ -110,7 +110,7 @@ def replace_file(target: str | Path, *parts: Buffer) -> None:
 def refusal(target: str | Path, error: OSError) -> RunError:
     """The error for a file that the operating system refuses to write."""
     what = f"'{target}' cannot be written: {error.strerror or error}"
-    return RunError("file-access", what, "check permissions and the space left")
+    return RunError(code_of(error), what, "check permissions and the space left")
 
 
 @dataclass(frozen=True)
@@ -152,8 +152,13 @@ def claim(file: str | Path, text: bytes = b"") -> Claim:
     return Claim(descriptor)
 
 
-def lock_file(descriptor: int, *, wait: bool) -> bool | None:
+def lock_file(descriptor: int, *, wait: bool, alone: bool = False) -> bool | None:
     """Lock an open file until it is closed.
+
+    Args:
+        descriptor: The file.
+        wait: Wait for others, and lock it for this process alone.
+        alone: Lock it for this process alone, without waiting.
 
     Returns:
         Whether the lock was acquired; None on systems without such locks.
@@ -163,7 +168,7 @@ def lock_file(descriptor: int, *, wait: bool) -> bool | None:
     except ImportError:
         return None
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX if wait else fcntl.LOCK_SH | fcntl.LOCK_NB)
+        fcntl.flock(descriptor, fcntl.LOCK_EX if wait else (fcntl.LOCK_EX if alone else fcntl.LOCK_SH) | fcntl.LOCK_NB)
     except OSError:
         return False
     return True

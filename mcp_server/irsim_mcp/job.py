@@ -116,7 +116,7 @@ def _run(job: dict[str, Any], progress: _Progress) -> str:
     try:
         result = run(**arguments, record=True, recorded=progress.recorded)
     except RunError as error:
-        if error.code != "file-access":
+        if error.code not in ("disk-full", "file-access"):
             raise
         print(f"irsim-mcp: no record of this run: {error.message}", file=sys.stderr)
         result = run(**arguments)

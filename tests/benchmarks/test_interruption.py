@@ -93,7 +93,9 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Hashes]:
 def assert_refused(done: subprocess.CompletedProcess[str]) -> None:
     assert done.returncode == 1, done.stderr
     assert "Traceback" not in done.stderr
-    assert re.search(r"error (not-writable|file-access): .*(make room|the space left)", done.stderr), done.stderr
+    assert re.search(r"error (disk-full|not-writable|file-access): .*(make room|the space left)", done.stderr), (
+        done.stderr
+    )
 
 
 @needs_kill

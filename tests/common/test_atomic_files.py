@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim.common.files import replace_bytes, replacing, write_atomically, write_new
+from irsim.common.files import TargetError, replace_bytes, replacing, write_atomically, write_new
 
 
 def stop(*_: object) -> None:
@@ -61,3 +61,14 @@ def test_an_encoder_that_fails_leaves_what_was_there_and_nothing_else(tmp_path: 
     assert target.read_text() == "old"
     encode(fails=False)
     assert target.read_text() == "new"
+
+
+def test_of_two_programs_that_write_a_new_file_one_is_told(tmp_path: Path) -> None:
+    target = tmp_path / "run.csv"
+    first = replacing(target, overwrite=False)
+    first.__enter__().write_text("first", encoding="utf-8")
+    with replacing(target, overwrite=False) as second:
+        second.write_text("second", encoding="utf-8")
+    with pytest.raises(TargetError, match="file-exists"):
+        first.__exit__(None, None, None)
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("run.csv", "second")]

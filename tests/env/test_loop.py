@@ -237,9 +237,10 @@ def test_passing_through_something_unobstructed_is_no_collision(make: Make) -> N
     assert env.outcome == "success"
 
 
-def test_environments_are_not_copied_in_secret(env: Any) -> None:
-    with pytest.raises(TypeError, match="seed"):
-        copy.copy(env)
+def test_a_copy_is_an_environment_of_its_own(env: Any) -> None:
+    other = copy.copy(env)
+    other.step()
+    assert (env.time, other.time) == (0.0, 0.1)
 
 
 LIMITS = """
@@ -283,3 +284,11 @@ def test_the_wheelbase_of_an_object_is_that_of_its_shape(make: Make) -> None:
 def test_the_resolution_of_a_map_is_a_number(env: Any) -> None:
     with pytest.raises(TypeError, match=r"resolution of a map must be a number \[m\], got 'a'"):
         env.get_map("a")
+
+
+def test_surplus_actions_are_a_warning_and_an_error_if_strict(make: Make, capsys: pytest.CaptureFixture[str]) -> None:
+    actions = [[0.1, 0.0], [0.2, 0.0]]
+    make(ONE, log_level="WARNING").step(actions)
+    assert "2 actions for 1 object(s)" in capsys.readouterr().out
+    with pytest.raises(ValueError, match=r"2 actions for 1 object\(s\)"):
+        make(ONE, strict=True).step(actions)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 import yaml
 from PIL import Image
 
 import irsim
 from irsim.cli.train import SARL_SETTINGS, SETTINGS
+from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.files import open_task
 from irsim.learning.training.run_folder import RunFolder, merit
 from irsim.learning.training.settings import SarlSettings, TrainingSettings
@@ -34,6 +36,16 @@ def test_the_scenario_of_a_task_is_kept_with_its_maps(tmp_path: Path) -> None:
     assert irsim.validate(tmp_path / "run" / "scenario.yaml").valid
     assert yaml.safe_load((tmp_path / "run" / "scenario.yaml").read_text())["world"]["after_arrival"] == "freeze"
     assert Worlds(tmp_path / "run" / "task.yaml").scenario.map_files["maps/hall.png"].startswith(str(tmp_path / "run"))
+
+
+def test_a_folder_holds_one_training_at_a_time(tmp_path: Path) -> None:
+    opened, folder = open_task(corridor())
+    first, second = RunFolder(tmp_path / "run"), RunFolder(tmp_path / "run")
+    first.begin(opened, folder, {}, TrainingSettings())
+    with pytest.raises(ArgumentError, match="another training writes"):
+        second.begin(opened, folder, {}, TrainingSettings())
+    del first
+    RunFolder(tmp_path / "run").begin(opened, folder, {}, TrainingSettings())
 
 
 def test_the_scenario_of_a_template_is_kept_too(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 from irsim.bridges.export.episode import open_episode
 from irsim.bridges.export.registry import Format, chosen_options, find_format
 from irsim.common.extras import require
-from irsim.common.files import TargetError, check_new, check_suffix, new_folder, replacing
+from irsim.common.files import TargetError, check_new, check_suffix, code_of, new_folder, replacing
 from irsim.common.text import clean
 from irsim.episodes.episode import Progress
 from irsim.results.records import ExportResult
@@ -89,11 +89,11 @@ def export_run(
         for one in runs
     ]
     try:
-        with new_folder(target) if form.folder else replacing(target) as path:
+        with new_folder(target) if form.folder else replacing(target, overwrite=overwrite) as path:
             notes = form.write(episodes, path, target.name)
     except OSError as error:
         what = f"'{target}' cannot be written: {error.strerror or error}"
-        raise RunError("file-access", what, "check permissions and the space left, or name another file") from None
+        raise RunError(code_of(error), what, "check permissions and the space left, or name another file") from None
     return ExportResult(
         run_ids=[one.id for one in runs],
         format=form.name,

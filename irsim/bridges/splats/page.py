@@ -20,7 +20,7 @@ from irsim.bridges.frames import inverse
 from irsim.bridges.splats.reading import read_splats
 from irsim.bridges.splats.recording import Recording, open_recording
 from irsim.bridges.splats.splats import Splats, moved
-from irsim.common.files import check_suffix, replacing
+from irsim.common.files import check_suffix, code_of, replacing
 from irsim.common.pages import bundle, one_page
 from irsim.common.text import clean
 from irsim.runs.files import RunError
@@ -111,7 +111,7 @@ def write_page(
             temporary.write_text(text, encoding="utf-8")
     except OSError as error:
         what = f"'{clean(target, 200)}' cannot be written: {error.strerror or error}"
-        raise RunError("file-access", what, "name another file with -o") from None
+        raise RunError(code_of(error), what, "name another file with -o") from None
     last = int(recording.step[-1])
     size = target.stat().st_size
     return PageFile(str(target), size, len(kept), len(scene), len(recording.bodies), last, notes)

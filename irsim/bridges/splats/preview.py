@@ -21,7 +21,7 @@ from irsim.bridges.splats.recording import Recording, body_splats, open_recordin
 from irsim.bridges.splats.render import View, picture
 from irsim.bridges.splats.splats import Splats, join_splats, moved
 from irsim.common.arrays import Floats
-from irsim.common.files import check_suffix, replacing
+from irsim.common.files import check_suffix, code_of, replacing
 from irsim.common.text import clean
 from irsim.graphics.encoding.animation import AnimationOptions, write_frames
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
@@ -139,7 +139,7 @@ def write_preview(
             _write_sheet(cells, target)
     except OSError as error:
         what = f"'{clean(target, 200)}' cannot be written: {error.strerror or error}"
-        raise RunError("file-access", what, "name another file with -o") from None
+        raise RunError(code_of(error), what, "name another file with -o") from None
     shown = (int(recording.step[rows[0]]), int(recording.step[rows[-1]]))
     return PreviewFile(str(target), len(rows), len(scene), shown, list(recording.world.notes))
 

@@ -72,6 +72,11 @@ TOOLS: dict[str, Code] = {
         "file cannot be read or written",
         "The system refuses access. Check the path, the permissions and the free disk space.",
     ),
+    "disk-full": Code(
+        "no space left on the disk",
+        "The disk, or the quota of the user, has no space left for the file; nothing incomplete is left of it. Free "
+        "some space, or write to another disk.",
+    ),
     "out-of-memory": Code(
         "not enough memory", "The work needs more memory than there is. Use fewer objects, beams or frames."
     ),

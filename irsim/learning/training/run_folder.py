@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from weakref import finalize
 
 import yaml
 from pydantic import ValidationError
@@ -20,6 +22,7 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.scene import scenario_text
 from irsim.learning.tasks.task import Task
 from irsim.learning.training.settings import AnySettings, settings_class
+from irsim.runs.files import lock_file
 from irsim.scenario.messages.translate import option_message, option_problems
 
 __all__ = ["RunFolder", "merit"]
@@ -43,7 +46,24 @@ class RunFolder:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.latest, self.best = path / "latest.zip", path / "best.zip"
+        self._claimed = False
         self._progress = path / "progress.jsonl"
+
+    def claim(self) -> None:
+        """Keep other programs from training in the folder, until this object or this process ends.
+
+        Raises:
+            ArgumentError: Another training writes to the folder.
+        """
+        if self._claimed:
+            return
+        self.path.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(self.path / "lock", os.O_CREAT | os.O_RDWR, 0o600)
+        finalize(self, os.close, descriptor)
+        if lock_file(descriptor, wait=False, alone=True) is False:
+            what = f"another training writes to {clean(self.path, 200)}"
+            raise ArgumentError(what, "name another folder with -o, or wait for its end")
+        self._claimed = True
 
     def begin(self, task: Task, folder: Path, maps: Mapping[str, str], settings: AnySettings) -> None:
         """Write what was asked for.
@@ -61,7 +81,7 @@ class RunFolder:
             raise ArgumentError(
                 f"{self.path} holds a training", "resume it with --resume, or name another folder with -o"
             )
-        self.path.mkdir(parents=True, exist_ok=True)
+        self.claim()
         data = task.model_dump(mode="json", exclude_unset=True)
         if task.file is not None:
             data["file"] = "scenario.yaml"

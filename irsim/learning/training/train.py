@@ -96,6 +96,7 @@ def train(
     """
     run = RunFolder(Path(folder))
     if resume:
+        run.claim()
         kept = run.settings()
         if not isinstance(kept, TrainingSettings):
             raise ArgumentError(f"{folder} holds a training with {kept.algo}", "resume it with irsim train --resume")

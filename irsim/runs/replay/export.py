@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from irsim.common.files import check_suffix, write_atomically
+from irsim.common.files import check_suffix, code_of, write_atomically
 from irsim.common.text import clean
 from irsim.results.run import ReplayResult
 from irsim.runs.files import RunError
@@ -47,7 +47,7 @@ def replay(
         write_atomically(target, text)
     except OSError as error:
         what = f"'{target}' cannot be written: {error.strerror or error}"
-        raise RunError("file-access", what, "name another file with -o") from None
+        raise RunError(code_of(error), what, "name another file with -o") from None
     return ReplayResult(
         run_id=opened.id,
         file=str(target),

@@ -155,6 +155,7 @@ def train_sarl(
     """
     run = RunFolder(Path(folder))
     if resume:
+        run.claim()
         kept = run.settings()
         if not isinstance(kept, SarlSettings):
             raise ArgumentError(f"{folder} holds a training with {kept.algo}", "resume it with irsim train --resume")
