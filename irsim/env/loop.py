@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
 from irsim.common.log import LEVELS
@@ -44,7 +44,7 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
         simulation.step_external()
     else:
         if action is not None:
-            surplus = _refuse if env._strict else env.logger.warning_once
+            surplus: Callable[[str], None] = _refuse if env._strict else env.logger.warning_once
             for view, control in assign_actions(env._objects, action, action_id, surplus):
                 if simulation.impose(view.row, control) and view.id not in env._limit_warnings:
                     _report_limits(env, view, control)
