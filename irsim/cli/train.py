@@ -11,6 +11,7 @@ import typer
 from irsim.cli.findings import print_findings
 from irsim.cli.guard import INVALID
 from irsim.cli.output import console
+from irsim.common.extras import require
 from irsim.learning.training.run_folder import RunFolder
 from irsim.learning.training.settings import read_settings
 from irsim.validation.file_reports import task_report
@@ -30,6 +31,10 @@ SARL_SETTINGS = (
     "score_units=[100, 100], value_units=[150, 100, 100], speeds=5, headings=16, dt=0.25, gap=end."
 )
 """The same for value networks."""
+
+
+_LIBRARIES = ("torch", "stable_baselines3", "tensorboard", "gymnasium")
+"""What training needs besides irsim; each is checked before one of them is imported."""
 
 
 def train(
@@ -95,6 +100,7 @@ def train(
     if settings.algo == "sarl" and workers > 1:
         typer.echo("--workers is for --algo ppo, and this training uses sarl: leave it out", err=True)
         raise typer.Exit(INVALID)
+    require("learn", *(("torch",) if settings.algo == "sarl" else _LIBRARIES))
     _let_threads_sleep()
     run: Any
     more: dict[str, Any] = {}

@@ -18,6 +18,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "yaml-number-text": ("world: {width: 1e1}", "world: {width: 10}"),
     "yaml-boolean": ("robot: {name: on}", "robot: {name: 'on'}"),
     "yaml-sexagesimal": ("world: {width: 12:30}", "world: {width: 12.5}"),
+    "hash-comment": ("robot:\n  color: #ff0000", "robot:\n  color: '#ff0000'"),
     "yaml-octal": ("world: {width: 010}", "world: {width: 10}"),
     "unknown-key": ("world: {dt: 0.1}", "world: {step_time: 0.1}"),
     "missing-key": ("obstacle: {shape: {name: linestring}}", "obstacle: {shape: {name: linestring, vertices: [[2, 2], [5, 2]]}, state: [0, 0, 0]}"),

@@ -44,7 +44,9 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
         simulation.step_external()
     else:
         if action is not None:
-            surplus: Callable[[str], None] = _refuse if env._strict else env.logger.warning_once
+            surplus: Callable[[str], None] = env.logger.warning_once
+            if env._strict:
+                surplus = _refuse
             for view, control in assign_actions(env._objects, action, action_id, surplus):
                 if simulation.impose(view.row, control) and view.id not in env._limit_warnings:
                     _report_limits(env, view, control)

@@ -6,6 +6,7 @@ from tags. Positions of nodes are recorded only when asked for: most files have 
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,6 +56,9 @@ def compose(text: str, limits: YamlLimits, *, positions: bool = False) -> Compos
     return Composed(composer.data, composer.problems, composer.fatal, composer.root)
 
 
+_COLOR_COMMENT = re.compile(r"\s+(#(?:[0-9a-fA-F]{3,4}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8}))\s*$")
+
+
 class _Composer:
     def __init__(self, text: str, limits: YamlLimits, positions: bool) -> None:
         self.text, self.limits, self.positions = text, limits, positions
@@ -64,6 +68,7 @@ class _Composer:
         self.data: Any = None
         self.root: Node | None = None
         self.fatal = False
+        self.lines: list[str] = []
         self.events = 0
         self.expanded = self.aliases = 0
 
@@ -127,6 +132,8 @@ class _Composer:
                 value, surprise = resolve(text)
                 if surprise is not None:
                     self._surprise(surprise, text, value, event)
+                elif not text:
+                    self._look_for_color(event)
         elif event.tag is not None and event.tag != "!":
             try:
                 value = resolve_tagged(event.tag, text)
@@ -309,6 +316,24 @@ class _Composer:
             given=shown,
             fix="remove the tag",
         )
+
+    def _look_for_color(self, event: Any) -> None:
+        """Warn of an empty value before a comment that looks like a color."""
+        frame = self.stack[-1] if self.stack else None
+        if frame is None or (frame.mapping and frame.key is NO_KEY):
+            return
+        lines = self.lines = self.lines or self.text.splitlines()
+        line = lines[event.end_mark.line] if event.end_mark.line < len(lines) else ""
+        found = _COLOR_COMMENT.match(line, event.end_mark.column)
+        if found is not None and (len(found[1]) > len("#1234") or "color" in str(frame.key)):
+            self._problem(
+                "hash-comment",
+                f"the value is empty, because '#' begins a comment: {found[1]}",
+                event,
+                severity="warning",
+                given=found[1],
+                fix=f"write it in quotes: '{found[1]}'",
+            )
 
     def _surprise(self, kind: str, text: str, value: Any, event: Any) -> None:
         what = "in base 60, like a time of day" if kind == "sexagesimal" else "as an octal number"

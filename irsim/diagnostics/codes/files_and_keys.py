@@ -85,6 +85,10 @@ FILE_AND_YAML: dict[str, Code] = {
         "number in base 60",
         "YAML 1.1 reads 12:30:45 as 45045, in base 60. Quote it to keep it as text, or write the number.",
     ),
+    "hash-comment": Code(
+        "color read as a comment",
+        "An unquoted # after a space begins a comment, so that the value before it is empty. Put the color in quotes.",
+    ),
     "yaml-octal": Code(
         "octal number", "YAML 1.1 reads a number that starts with 0, such as 010, in base 8. Drop the leading zero."
     ),

@@ -152,6 +152,8 @@ class Explainer:
                 f"rename it to '{near}'",
                 Edit("rename", self.path, near, safe=bool(meant) or is_slip_of(key, near)),
             )
+        elif other is None and not parent and is_shared(written, str(key)):
+            fix = f"put it below 'custom', which irsim does not read: custom: {{{key}: &NAME ...}}"
         elif other is None:
             fix, edit = "remove it", Edit("remove", self.path, safe=False)
         return error(
@@ -379,3 +381,22 @@ class Explainer:
     def _unit(self) -> str:
         unit = unit_of(self.field) if self.field is not None else None
         return f" [{unit}]" if unit else ""
+
+
+def is_shared(document: Any, key: str) -> bool:
+    """Whether other parts of a document take over the value of a key, by an alias or by a merge of its mapping."""
+    value = document.get(key) if isinstance(document, Mapping) else None
+    if not isinstance(value, (Mapping, list)) or not value:
+        return False
+    waiting = [part for name, part in document.items() if name != key]
+    while waiting:
+        part = waiting.pop()
+        if part is value:
+            return True
+        if isinstance(part, Mapping):
+            if isinstance(value, Mapping) and all(name in part and part[name] is one for name, one in value.items()):
+                return True
+            waiting += part.values()
+        elif isinstance(part, list):
+            waiting += part
+    return False

@@ -27,6 +27,7 @@ INEXPRESSIBLE: dict[str, str] = {
     "too-many-events": "size cannot be counted",
     "file-too-large": "size cannot be counted",
     "yaml-sexagesimal": "the parsed value is an ordinary number",
+    "hash-comment": "the parsed value is empty",
     "yaml-octal": "the parsed value is an ordinary number",
     "not-a-number": "JSON has no NaN, and bounds do not exclude it",
     "wrong-length (control vectors)": "the length of vel_min, vel_max, acce and velocity depends on the kinematics",
