@@ -391,8 +391,6 @@ def is_shared(document: Any, key: str) -> bool:
     waiting = [part for name, part in document.items() if name != key]
     while waiting:
         part = waiting.pop()
-        if part is value:
-            return True
         if isinstance(part, Mapping):
             if isinstance(value, Mapping) and all(name in part and part[name] is one for name, one in value.items()):
                 return True
