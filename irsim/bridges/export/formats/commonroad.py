@@ -9,7 +9,6 @@ there.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -21,6 +20,7 @@ import shapely
 from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.recorded import recorded_scene, recorded_states
+from irsim.bridges.solids import Box, solids_of
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Line
 from irsim.simulation.scene import SceneObject
@@ -31,7 +31,7 @@ _FIRST_OBSTACLE = 1
 _DIGITS = 9
 """Digits after the point, of coordinates and times."""
 _THICKNESS = 0.05
-"""Of legs of lines [m]."""
+"""Of legs of lines, which are outside of the rooms that closed lines are the walls of [m]."""
 
 
 def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
@@ -100,12 +100,16 @@ def _parts(agent: SceneObject) -> Iterator[tuple[Any, Floats]]:
         if not isinstance(part, Line):
             yield PolygonObstacleShape(vertices=part.corners), np.zeros(2)
             continue
-        for a, b in itertools.pairwise(part.path):
-            length = math.dist(a, b)
-            if length == 0:
-                continue
-            aside = np.array([a[1] - b[1], b[0] - a[0]]) / length * (_THICKNESS / 2)
-            yield PolygonObstacleShape(vertices=np.array([a - aside, b - aside, b + aside, a + aside])), np.zeros(2)
+        for leg in solids_of(part, _THICKNESS):
+            if isinstance(leg, Box):
+                yield PolygonObstacleShape(vertices=_corners(leg)), np.zeros(2)
+
+
+def _corners(box: Box) -> Floats:
+    """(4, 2) counterclockwise corners of a box, body frame."""
+    cosine, sine = math.cos(box.yaw), math.sin(box.yaw)
+    ahead, aside = box.half[0] * np.array([cosine, sine]), box.half[1] * np.array([-sine, cosine])
+    return np.add(box.center, [-ahead - aside, ahead - aside, ahead + aside, aside - ahead])
 
 
 def _static(agent: SceneObject, numbers: Iterator[int]) -> Iterator[Any]:

@@ -18,6 +18,7 @@ import shapely
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import slices
 from irsim.bridges.maps.kinds import mesh
+from irsim.bridges.maps.kinds._obj import read_obj
 from irsim.bridges.maps.kinds._sdf_places import Frames, find_file, model_of, pose_of
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
 from irsim.bridges.maps.xml_files import find_number, find_numbers, read_xml
@@ -263,8 +264,11 @@ def _mesh(world: _World, file: Path, geometry: ET.Element, place: Floats, band: 
         world.leave(f"meshes are read from {', '.join(mesh.KIND.suffixes)}", uri)
         return None
     try:
-        require(mesh.KIND.extra, *mesh.KIND.libraries)
-        scene = mesh.read(found, ImportOptions(up="z"), world.limits)
+        if found.suffix.lower() == ".obj":
+            triangles = read_obj(found, world.limits)
+        else:
+            require(mesh.KIND.extra, *mesh.KIND.libraries)
+            triangles = mesh.read(found, ImportOptions(up="z"), world.limits).solid
     except ExtraError:
         world.leave("meshes need the extra: pip install 'irsim-mcp[mesh]'", uri)
         return None
@@ -273,7 +277,7 @@ def _mesh(world: _World, file: Path, geometry: ET.Element, place: Floats, band: 
         return None
     world.parts.append(found)
     scale = np.array(find_numbers(file, geometry.find("scale"), 3, (1, 1, 1)))
-    points = np.asarray(scene.solid, dtype=np.float64).reshape(-1, 3) * scale
+    points = np.asarray(triangles, dtype=np.float64).reshape(-1, 3) * scale
     return slices.slice_of_mesh(_moved(place, points).reshape(-1, 3, 3), *band)
 
 
