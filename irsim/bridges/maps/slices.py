@@ -53,7 +53,8 @@ def cylinder_points(radius: float, length: float, top: float | None = None) -> F
 def capsule_points(radius: float, length: float) -> Floats:
     """Corners of a cylinder along z with half a ball at each end."""
     ball, half = ellipsoid_points(np.full(3, radius)), np.array([0, 0, length / 2])
-    return np.concatenate([ball + half, ball - half])
+    middle = _RINGS * SEGMENTS
+    return np.concatenate([ball[: middle + SEGMENTS] - half, ball[middle:] + half])
 
 
 def ellipsoid_points(radii: Floats) -> Floats:
@@ -65,25 +66,33 @@ def ellipsoid_points(radii: Floats) -> Floats:
     return points
 
 
-def slice_of_hull(points: Floats, low: float, high: float) -> Any:
+def slice_of_hull(points: Floats, low: float, high: float, *, rings: bool = False) -> Any:
     """The convex outline of the part of a convex solid between two heights; None if there is none.
 
     Args:
         points: (N, 3) corners of the solid.
         low: The lower height [m].
         high: The upper height [m].
+        rings: Whether the corners are rings of ``SEGMENTS`` corners, of which each is joined to the next one only.
     """
     z = points[:, 2]
     if z.max() <= low + _TINY or z.min() >= high - _TINY:
         return None
     kept = [points[(z >= low) & (z <= high), :2]]
     for limit in (low, high):
-        below, above = points[z < limit], points[z > limit]
-        if len(below) and len(above):
-            share = (limit - below[:, None, 2]) / (above[None, :, 2] - below[:, None, 2])
-            kept.append(
-                (below[:, None, :2] + share[..., None] * (above[None, :, :2] - below[:, None, :2])).reshape(-1, 2)
+        if rings:
+            ring = points.reshape(-1, SEGMENTS, 3)
+            start, end = (
+                np.concatenate([one.reshape(-1, 3), other])
+                for one, other in ((ring[:-1], points), (ring[1:], np.roll(ring, -1, axis=1).reshape(-1, 3)))
             )
+            crossing = (start[:, 2] < limit) != (end[:, 2] < limit)
+            start, end = start[crossing], end[crossing]
+        else:
+            below, above = points[z < limit], points[z > limit]
+            start, end = np.repeat(below, len(above), axis=0), np.tile(above, (len(below), 1))
+        share = (limit - start[:, 2:]) / (end[:, 2:] - start[:, 2:])
+        kept.append(start[:, :2] + share * (end[:, :2] - start[:, :2]))
     hull = shapely.convex_hull(shapely.MultiPoint(np.concatenate(kept)))
     return hull if hull.geom_type == "Polygon" and hull.area > _TINY else None
 

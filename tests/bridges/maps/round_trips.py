@@ -53,11 +53,11 @@ def differing_share(
     grown: float = 0.0,
     **options: Any,
 ) -> float:
-    """Share by which the occupied area of an imported scene differs from that of the scene.
+    """Share by which the occupied area of an imported scene differs from the area of the scene.
 
     Args:
         text: The scenario.
-        file: What the export writes.
+        file: The file that the export writes.
         to: Its format.
         thick: Thickness that lines get in it [m].
         wall: Thickness of the walls of the world and of rooms in it [m].

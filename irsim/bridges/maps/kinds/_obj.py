@@ -38,7 +38,7 @@ def read_obj(path: Path, limits: ImportLimits) -> Triangles:
                 face = [_corner(word, len(corners)) for word in words[1:]]
                 faces += [(face[0], face[k], face[k + 1]) for k in range(1, len(face) - 1)]
         except ValueError:
-            raise unusable(path, f"line {number} is '{line[:60]}', which is no corner and no face") from None
+            raise unusable(path, f"line {number} is '{line[:60]}', and must be a corner or a face") from None
         if len(faces) > limits.triangles:
             raise unusable(path, f"it has more than {limits.triangles:,} triangles", "give a smaller file")
     if not faces:

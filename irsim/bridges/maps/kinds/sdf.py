@@ -195,7 +195,7 @@ def _shape(world: _World, file: Path, shape: ET.Element, place: Floats, name: st
             read_one = _mesh if kind == "mesh" else _polyline
             region = read_one(world, file, geometry, place, (low, high), name)
         elif kind in _CONVEX:
-            region = slices.slice_of_hull(_moved(place, _CONVEX[kind](file, geometry)), low, high)
+            region = slices.slice_of_hull(_moved(place, _CONVEX[kind](file, geometry)), low, high, rings=kind != "box")
         else:
             if kind != "empty":
                 world.leave(f"shapes of the kind {clean(kind, 30)} are not read", name)

@@ -1,0 +1,238 @@
+"""``mjcf``: models of MuJoCo (``.xml``): what a robot meets of their geoms, read from the XML without MuJoCo.
+
+Geoms that touch count; a body without any counts by what is seen of it. Bodies that actuators or programs move are
+robots, and stay out. Meshes count with their surface, where MuJoCo would take their hull.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.maps import slices
+from irsim.bridges.maps.kinds import mesh
+from irsim.bridges.maps.kinds._mjcf_text import Classes, inside, numbers_of, place_of, rotation_along, whole_model
+from irsim.bridges.maps.kinds._obj import read_obj
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
+from irsim.common.arrays import Floats
+from irsim.common.extras import ExtraError, require
+from irsim.common.text import clean
+
+__all__ = ["KIND"]
+
+_LISTED = 5
+_UPRIGHT = 1e-6
+_MAX_CORNERS = 2000
+"""Corners of a mesh without faces, of which all pairs are looked at."""
+_ENDS = ("joint", "jointinparent", "site", "refsite", "cranksite", "slidersite", "body", "tendon")
+"""Attributes by which actuators name what they move."""
+
+
+@dataclass
+class _Model:
+    """A model, and the outlines that are collected of it.
+
+    Attributes:
+        path: The file.
+        options, limits: How the import is done.
+        root: The element with everything that is included.
+        classes: The defaults.
+        driven: Names of joints, sites and bodies that actuators move.
+        meshes: Name of a mesh -> its element.
+        things: Outlines of what stands in the way.
+        parts: Files that were read.
+        left: Reason -> names of what was left out for it.
+    """
+
+    path: Path
+    options: ImportOptions
+    limits: ImportLimits
+    root: ET.Element
+    classes: Classes
+    driven: set[str]
+    meshes: dict[str, ET.Element]
+    parts: list[Path]
+    things: list[Outlined] = field(default_factory=list)
+    left: dict[str, list[str]] = field(default_factory=dict)
+
+    def leave(self, why: str, name: str) -> None:
+        """Note that something is left out."""
+        self.left.setdefault(why, []).append(clean(name, 80))
+
+
+def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
+    """Outlines of the geoms of a model.
+
+    Raises:
+        BridgeError: The file is damaged, or includes what is not there or lies outside of its folder and the root.
+    """
+    root, parts = whole_model(path, options.root, limits)
+    meshes = {item.get("name") or Path(item.get("file", "")).stem: item for item in root.iterfind("asset/mesh")}
+    model = _Model(path, options, limits, root, Classes(path, root), _driven(root), meshes, parts)
+    for world in root.iterfind("worldbody"):
+        _body(model, world, np.eye(4), "main", "")
+    notes = []
+    for why, names in model.left.items():
+        listed = ", ".join(sorted(set(names))[:_LISTED]) + (", …" if len(set(names)) > _LISTED else "")
+        notes.append(f"left out: {len(names)} element{'s' * (len(names) != 1)} ({listed}): {why}")
+    return Outlines(model.things, height=options.height or 0.0, notes=notes, parts=model.parts)
+
+
+def _driven(root: ET.Element) -> set[str]:
+    """Names of joints, sites and bodies that actuators move, by tendons as well."""
+    names = {item.get(key, "") for actuator in root.iterfind("actuator/*") for key in _ENDS for item in [actuator]}
+    for tendon in root.iterfind("tendon/*"):
+        if tendon.get("name") in names:
+            names |= {item.get(key, "") for item in tendon for key in ("joint", "site")}
+    return names - {""}
+
+
+def _body(model: _Model, body: ET.Element, place: Floats, childclass: str, name: str) -> None:
+    """Collect the geoms of a body, or of a frame, and of what is in it.
+
+    Args:
+        model: Where they are collected.
+        body: The element.
+        place: (4, 4) its pose in the world.
+        childclass: The class of what is in it.
+        name: Its name.
+    """
+    childclass = body.get("childclass", childclass)
+    moving = body.find("joint") is not None or body.find("freejoint") is not None
+    if body.get("mocap") == "true":
+        model.leave("a program moves it", name)
+        return
+    if moving and any(
+        item.get("name") in model.driven for item in body.iter() if item.tag in ("joint", "site", "body")
+    ):
+        model.leave("a body that actuators move is a robot", name)
+        return
+    geoms = [(geom, model.classes.attributes(geom, childclass)) for geom in body.iterfind("geom")]
+    touching = [one for one in geoms if one[1].get("contype") != "0" or one[1].get("conaffinity") != "0"]
+    for number, (geom, given) in enumerate(touching or geoms):
+        _geom(model, given, place, geom.get("name") or f"{name or 'world'}/{number}")
+    for child in body:
+        if child.tag in ("body", "frame"):
+            inner = place @ place_of(model.path, model.classes, dict(child.attrib))
+            _body(model, child, inner, childclass, child.get("name", name))
+        elif child.tag in ("replicate", "attach", "composite", "flexcomp"):
+            model.leave(f"<{child.tag}> is not read", child.get("name") or child.get("prefix") or name)
+
+
+def _geom(model: _Model, given: dict[str, str], place: Floats, name: str) -> None:
+    """Collect the outline of a geom by its attributes and the defaults of its class."""
+    kind = given.get("type", "sphere")
+    low = (model.options.height or 0.0) + model.options.climb
+    band = (low, low - model.options.climb + model.options.headroom)
+    at = place @ place_of(model.path, model.classes, given)
+    if kind == "plane":
+        if at[2, 2] < 0.9:
+            model.leave("planes have no end", name)
+        return
+    if kind == "mesh":
+        region = _mesh(model, given.get("mesh", ""), at, band)
+    elif kind not in _SIZES:
+        model.leave(f"geoms of the type {clean(kind, 30)} are not read", name)
+        return
+    elif "mesh" in given:
+        model.leave("shapes that are fitted to meshes are not read", name)
+        return
+    else:
+        size = numbers_of(model.path, given, "size", 0)
+        if "fromto" in given:
+            ends = np.array(numbers_of(model.path, given, "fromto", 6)).reshape(2, 3)
+            local = np.eye(4)
+            local[:3, 3], local[:3, :3] = ends.mean(axis=0), rotation_along(ends[0] - ends[1])
+            at, half = place @ local, float(np.linalg.norm(ends[0] - ends[1])) / 2
+            size = [*size[:1], half] if kind in ("capsule", "cylinder") else [*size[:1], *size[:1], half]
+        if len(size) < _SIZES[kind] or min(size[: _SIZES[kind]]) <= 0:
+            raise unusable(model.path, f"the geom {clean(name, 60)} of the type {kind} has no size that fits")
+        region = slices.slice_of_hull(_moved(at, _corners(kind, size)), *band, rings=kind != "box")
+    if region is not None:
+        circle = None
+        if kind == "cylinder" and abs(at[2, 2]) > 1 - _UPRIGHT:
+            circle = (float(at[0, 3]), float(at[1, 3]), size[0])
+        model.things.append(Outlined(name, region, circle))
+
+
+_SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "ellipsoid": 3, "box": 3}
+"""Kinds of convex geoms, and how many numbers their size has: half of what they measure."""
+
+
+def _corners(kind: str, size: list[float]) -> Floats:
+    """(N, 3) corners of a convex geom in its own frame."""
+    if kind == "box":
+        return slices.box_points(2 * np.array(size[:3]))
+    if kind == "cylinder":
+        return slices.cylinder_points(size[0], 2 * size[1])
+    if kind == "capsule":
+        return slices.capsule_points(size[0], 2 * size[1])
+    return slices.ellipsoid_points(np.array(size[:3]) if kind == "ellipsoid" else np.full(3, size[0]))
+
+
+def _moved(place: Floats, points: Floats) -> Floats:
+    moved: Floats = points @ place[:3, :3].T + place[:3, 3]
+    return moved
+
+
+def _mesh(model: _Model, name: str, place: Floats, band: tuple[float, float]) -> object:
+    """The outline of a mesh; None if nothing of it is in the way, or if it cannot be read, which is noted."""
+    element = model.meshes.get(name)
+    if element is None:
+        raise unusable(model.path, f"there is no mesh '{clean(name, 60)}'")
+    given = model.classes.attributes(element, "main")
+    scale = np.array(numbers_of(model.path, given, "scale", 3, (1, 1, 1)))
+    reference = np.linalg.inv(place_of(model.path, model.classes, {
+        key: given["ref" + key] for key in ("pos", "quat") if "ref" + key in given
+    }))  # fmt: skip
+    if "vertex" in given:
+        points = np.array(numbers_of(model.path, given, "vertex", 0))
+        if len(points) % 3:
+            raise unusable(model.path, f"the corners of the mesh '{clean(name, 60)}' must have 3 numbers each")
+        points = _moved(place @ reference, points.reshape(-1, 3) * scale)
+        if 0 < len(points) <= _MAX_CORNERS:
+            return slices.slice_of_hull(points, *band)
+        model.leave(f"hulls have 1 to {_MAX_CORNERS:,} corners", name)
+        return None
+    source = _mesh_file(model, given.get("file", ""))
+    if source is None:
+        model.leave("the mesh is not here or of another kind, --root names the folder that holds it", name)
+        return None
+    try:
+        if source.suffix.lower() == ".obj":
+            triangles = read_obj(source, model.limits)
+        else:
+            require(mesh.KIND.extra, *mesh.KIND.libraries)
+            triangles = mesh.read(source, ImportOptions(up="z"), model.limits).solid
+    except ExtraError:
+        model.leave("meshes need the extra: pip install 'irsim-mcp[mesh]'", name)
+        return None
+    except BridgeError as error:
+        model.leave(str(error), name)
+        return None
+    model.parts.append(source)
+    points = np.asarray(triangles, dtype=np.float64).reshape(-1, 3) * scale
+    return slices.slice_of_mesh(_moved(place @ reference, points).reshape(-1, 3, 3), *band)
+
+
+def _mesh_file(model: _Model, file: str) -> Path | None:
+    """The file of a mesh in the folder of meshes of the model; None if it is not there."""
+    folder = model.classes.compiler.get("meshdir", model.classes.compiler.get("assetdir", ""))
+    source = inside(model.path.resolve().parent, Path(folder) / file, model.options.root)
+    return source if source is not None and source.suffix.lower() in mesh.KIND.suffixes else None
+
+
+KIND = Kind(
+    name="mjcf",
+    title="a model of MuJoCo",
+    suffixes=(),
+    accepts=lambda head: False,  # it is known by its root element
+    read=read,
+    unknown="free",
+    unused=("slope", "up", "level", "meters_per_unit", "opacity", "lanes"),
+    roots=("mujoco",),
+)
