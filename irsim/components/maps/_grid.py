@@ -6,8 +6,6 @@ import copyreg
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 import irsim._core as core
 from irsim.components.maps._site import Noise, Raster
 
@@ -146,6 +144,8 @@ def merged(values: Floats, side: int) -> Floats:
         values: (nx, ny) occupancies.
         side: Cells along a side of a block; those at the upper ends have the cells that are left.
     """
+    import numpy as np
+
     for axis in (0, 1):
         values = np.maximum.reduceat(values, np.arange(0, values.shape[axis], side), axis=axis)
     return values
