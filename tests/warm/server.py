@@ -39,7 +39,7 @@ def load(name: str) -> None:
     if name.endswith(".*"):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             if not module.name.endswith(".__main__") and not module.name.startswith("irsim.compat."):
-                with suppress(ExtraError):  # a module for libraries that are not installed here
+                with suppress(ExtraError, ModuleNotFoundError):  # a module for libraries that are not installed here
                     importlib.import_module(module.name)
 
 

@@ -12,7 +12,7 @@ from irsim.compat.functions._decide import behavior_options, decide
 
 __all__ = ["SocialForceModelBatch", "social_force_model"]
 
-_UNLIMITED_SPEED_M_S = 1e9
+_UNLIMITED_SPEED_M_S = 1e7
 _FORCE_PERIOD_S = 1e-3
 """Period [s] over which a force is measured as a change of velocity."""
 _NO_OPTIONS = (
