@@ -215,3 +215,7 @@ def test_the_house_of_a_turtlebot(foreign) -> None:
         assert name in note
     walls = import_map(foreign / "gazebo" / "inner_walls.sdf", "walls.yaml")
     assert walls.occupied * walls.resolution**2 == pytest.approx(7 * 0.15, rel=0.01)
+
+
+def test_names_that_are_too_long_are_of_no_file() -> None:
+    assert "it is not here" in world(f"<include><uri>{'a' * 5000}</uri></include>").notes[0]

@@ -40,6 +40,7 @@ def area(outlines: Outlines) -> float:
         ('<geom type="ellipsoid" size="1 0.5 0.4" pos="0 0 0.3"/>', math.pi / 2),
         ('<geom type="mesh" mesh="wedge"/>', 2.0),
         ('<geom type="mesh" mesh="big"/>', 8.0),
+        ('<geom type="mesh" mesh="moved"/><geom type="box" size="1 1 1" pos="1 1 0"/>', 4.0 + 8.0 - 0.5),
         ('<geom type="mesh" mesh="prism"/>', 0.5),
     ],
 )
@@ -49,6 +50,7 @@ def test_geoms_have_their_area(geom, expected) -> None:
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 3 2 1\nf 4 5 6\nf 1 2 5 4\nf 2 3 6 5\nf 3 1 4 6\n"
     )
     asset = f'<mesh name="wedge" vertex="{_WEDGE}"/><mesh name="big" vertex="{_WEDGE}" scale="2 2 1"/>'
+    asset += f'<mesh name="moved" vertex="{_WEDGE}" scale="2 2 1" refpos="1.5 0 0"/>'  # is moved before it is scaled
     more = f'<compiler meshdir="parts"/><asset>{asset}<mesh file="prism.obj"/></asset>'
     assert area(model(geom, more)) == pytest.approx(expected, rel=0.01)
 
@@ -122,6 +124,7 @@ def test_files_below_the_root_are_included(tmp_path) -> None:
     [
         ('<include file="m.xml"/>', "included twice"),
         ('<include file="/etc/hostname"/>', "is not here"),
+        (f'<include file="{"a" * 5000}"/>', "is not here"),
         ('<geom class="none"/>', "class 'none', which is not there"),
         ('<geom type="mesh" mesh="none"/>', "no mesh 'none'"),
         ('<geom type="box" size="1 1"/>', "no size that fits"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ET
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -32,8 +33,9 @@ def inside(folder: Path, name: Path, root: str | None) -> Path | None:
     roots = [Path(one).resolve() for one in (folder, root) if one is not None]
     for start in roots:
         target = (start / name).resolve()
-        if target.is_file() and any(one in target.parents for one in roots):
-            return target
+        with suppress(OSError):  # such as a name that is too long
+            if target.is_file() and any(one in target.parents for one in roots):
+                return target
     return None
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import xml.etree.ElementTree as ET
+from contextlib import suppress
 from pathlib import Path, PurePosixPath
 
 import numpy as np
@@ -137,8 +138,9 @@ def find_file(uri: str, beside: Path, root: str | None, limits: ImportLimits) ->
     for folder, candidate in tried:
         inside = folder.resolve()
         target = candidate.resolve()
-        if target.exists() and (target == inside or inside in target.parents):
-            return target
+        with suppress(OSError):  # such as a name that is too long
+            if target.exists() and (target == inside or inside in target.parents):
+                return target
     return None
 
 

@@ -186,14 +186,13 @@ def _mesh(model: _Model, name: str, place: Floats, band: tuple[float, float]) ->
         raise unusable(model.path, f"there is no mesh '{clean(name, 60)}'")
     given = model.classes.attributes(element, "main")
     scale = np.array(numbers_of(model.path, given, "scale", 3, (1, 1, 1)))
-    reference = np.linalg.inv(place_of(model.path, model.classes, {
-        key: given["ref" + key] for key in ("pos", "quat") if "ref" + key in given
-    }))  # fmt: skip
+    moved = {key: given["ref" + key] for key in ("pos", "quat") if "ref" + key in given}
+    reference = np.linalg.inv(place_of(model.path, model.classes, moved)).astype(np.float64)
     if "vertex" in given:
         points = np.array(numbers_of(model.path, given, "vertex", 0))
         if len(points) % 3:
             raise unusable(model.path, f"the corners of the mesh '{clean(name, 60)}' must have 3 numbers each")
-        points = _moved(place @ reference, points.reshape(-1, 3) * scale)
+        points = _moved(place, _moved(reference, points.reshape(-1, 3)) * scale)
         if 0 < len(points) <= _MAX_CORNERS:
             return slices.slice_of_hull(points, *band)
         model.leave(f"hulls have 1 to {_MAX_CORNERS:,} corners", name)
@@ -215,8 +214,8 @@ def _mesh(model: _Model, name: str, place: Floats, band: tuple[float, float]) ->
         model.leave(str(error), name)
         return None
     model.parts.append(source)
-    points = np.asarray(triangles, dtype=np.float64).reshape(-1, 3) * scale
-    return slices.slice_of_mesh(_moved(place @ reference, points).reshape(-1, 3, 3), *band)
+    points = _moved(reference, np.asarray(triangles, dtype=np.float64).reshape(-1, 3)) * scale
+    return slices.slice_of_mesh(_moved(place, points).reshape(-1, 3, 3), *band)
 
 
 def _mesh_file(model: _Model, file: str) -> Path | None:
