@@ -241,7 +241,9 @@ def test_noise_is_drawn_per_scene_and_seed() -> None:
     assert (state.cells(1).occupied != first[0]).any()
     assert state.cells(0) is None
     _, thin = scene(robot(), obstacle(parts=[noise(every=3)]), seeds=(2,))
-    assert (thin.cells(1).occupied == first[1][::3, ::3]).all()
+    whole, cells = first[1], thin.cells(1).occupied
+    for row, column in np.ndindex(*cells.shape):  # of nine cells the fullest: no wall is lost
+        assert cells[row, column] == whole[3 * row : 3 * row + 3, 3 * column : 3 * column + 3].max()
 
 
 def test_a_room_collides_and_is_seen_from_inside() -> None:

@@ -207,7 +207,7 @@ async def test_no_tool_takes_code(empty: Path) -> None:
             assert tool.annotations.open_world_hint is False
 
 
-def test_workers_get_few_variables_and_a_session(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_workers_get_few_variables_and_a_session(monkeypatch: pytest.MonkeyPatch, ordinary_processes: None) -> None:
     for name in ("ANTHROPIC_API_KEY", "IRSIM_MCP_TOKEN", "PYTHONPATH", "LD_PRELOAD", "PYTHONSTARTUP", "MPLCONFIGDIR"):
         monkeypatch.setenv(name, "secret")
     command, options = worker.process_options(Workspace(Path()))

@@ -212,6 +212,6 @@ def test_a_full_disk_is_told(room: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("irsim.runs.files.os.replace", full)
-    with pytest.raises(RunError, match=r"file-access: .*No space left"):
+    with pytest.raises(RunError, match=r"disk-full: .*No space left"):
         irsim.run(room, seed=0, record=True)
     assert not list(room.parent.rglob(".new-*"))

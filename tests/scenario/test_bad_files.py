@@ -102,7 +102,7 @@ ROBOT = {
     "goal": [9, 9],
 }
 OBSTACLE = {"shape": {"name": "circle", "radius": 0.3}, "state": [5, 8, 0]}
-AS_TEXT = ("yaml-", "empty-", "multiple-", "not-a-scenario", "unsupported-", "duplicate-key")
+AS_TEXT = ("yaml-", "empty-", "multiple-", "not-a-scenario", "unsupported-", "duplicate-key", "hash-")
 
 
 def codes(code: str, text: str) -> set[str]:
