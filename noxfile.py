@@ -277,7 +277,7 @@ def learn(session: nox.Session) -> None:
 @nox.session(reuse_venv=True, python=find_python(INTEROP))
 def interop(session: nox.Session) -> None:
     """Bridges, each against software that somebody else wrote; a test that is skipped fails."""
-    extras = "ros2,zenoh,rosbridge,bag,mujoco,usd,mesh,carla,scenarios,records"
+    extras = "ros2,zenoh,rosbridge,bag,mujoco,usd,mesh,plans,carla,scenarios,records"
     install(session, "-e", f".[test,{extras}]", PLAYWRIGHT, *PYTHON_PEERS)
     install_debian(session, DEBIAN_PEERS)
     peers = {"IRSIM_INTEROP": "required", "IRSIM_SPARK": install_npm(session, NPM_PEERS)}
