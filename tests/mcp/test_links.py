@@ -73,6 +73,12 @@ class Place:
         return {"run_id": self.run_id, "to": to, "objects": "movers", "out": "exports"}
 
 
+@pytest.fixture(autouse=True)
+def _where_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tasks, which run in this process here, leave the current folder as workers may."""
+    monkeypatch.chdir(Path.cwd())
+
+
 @pytest.fixture(scope="module")
 def place(tmp_path_factory: pytest.TempPathFactory) -> Place:
     return Place(tmp_path_factory.mktemp("links") / "workspace")
