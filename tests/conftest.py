@@ -84,7 +84,7 @@ def pytest_collection_finish() -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item) -> Iterator[None]:
-    """Tests over files of others have to run where the files are."""
+    """Tests over foreign files have to run where the files are."""
     report = yield
     judge(item, report)
     return report

@@ -14,7 +14,7 @@ import pytest
 
 
 def folder() -> Path | None:
-    """The folder with files of others, or None where there is none."""
+    """The folder of foreign files; None where it is missing."""
     shared = os.environ.get("IRSIM_SHARED")
     files = Path(shared, "data", "foreign") if shared else None
     return files if files and files.is_dir() else None
@@ -22,11 +22,11 @@ def folder() -> Path | None:
 
 @pytest.fixture(scope="session")
 def foreign() -> Path:
-    """The folder with files of others; the test is skipped where there is none."""
-    found = folder()
-    if found is None:
-        pytest.skip("IRSIM_SHARED does not name a folder with data/foreign, in which files of others lie")
-    return found
+    """The folder of foreign files; a test is skipped where it is missing."""
+    files = folder()
+    if files is None:
+        pytest.skip("IRSIM_SHARED does not name a folder with data/foreign, which holds the foreign files")
+    return files
 
 
 def judge(item: pytest.Item, report: Any) -> None:
@@ -34,13 +34,13 @@ def judge(item: pytest.Item, report: Any) -> None:
 
     Args:
         item: The test.
-        report: What pytest says about one of its phases; changed in place.
+        report: The report of pytest about one of its phases, which is changed in place.
     """
     if item.get_closest_marker("foreign") is None or folder() is None:
         return
     if report.skipped and not hasattr(report, "wasxfail"):
         report.outcome = "failed"
-        report.longrepr = f"{item.nodeid} was skipped although the files of others are there: {report.longrepr[2]}"
+        report.longrepr = f"{item.nodeid} was skipped although the foreign files are there: {report.longrepr[2]}"
     elif report.when == "call" and (log := os.environ.get("IRSIM_FOREIGN_LOG")):
         with Path(log).open("a", encoding="utf-8") as file:
             file.write(f"{item.nodeid}\n")

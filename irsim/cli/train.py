@@ -34,7 +34,7 @@ SARL_SETTINGS = (
 
 
 _LIBRARIES = ("torch", "stable_baselines3", "tensorboard", "gymnasium")
-"""What training needs besides irsim; each is checked before one of them is imported."""
+"""Packages that training needs besides irsim; each is checked before one of them is imported."""
 
 
 def train(

@@ -42,7 +42,7 @@ _NEW = os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0)
 
 _FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)})
 _FULL_WORDS = ("no space left on device", "disk is full", "quota exceeded", "io_enospc")
-"""What libraries in C say instead of an error number."""
+"""Words by which libraries in C report a full disk instead of an error number."""
 
 
 def is_disk_full(error: BaseException | None) -> bool:

@@ -9,7 +9,7 @@ from irsim.simulation.snapshot import dump, load
 __all__ = ["Snapshots"]
 
 _KEPT = ("_fresh", "_over", "agents", "_np_random", "_np_random_seed")
-"""Attributes of environments that change in a step or a reset, besides those of their worlds."""
+"""Attributes of environments that change in a step or a reset, besides the attributes of their worlds."""
 
 
 class Snapshots:

@@ -180,7 +180,7 @@ class VectorEnv(Snapshots, GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[
         return dict(self._facts)
 
     def render(self) -> tuple[Any, ...] | None:
-        """A picture of each world; of worlds of other processes there are none. ``human`` shows the first one."""
+        """A picture of each world of this process. ``human`` shows the first one."""
         if self.render_mode is None:
             return None
         human = self.render_mode == "human"

@@ -166,7 +166,7 @@ class PolicyDriver:
             self._control(simulation, rows)
 
     def memory(self) -> Any:
-        """What was decided for steps to come, and what the policy remembers."""
+        """Decisions for steps to come, and the memory of the policy."""
         return [getattr(self, name) for name in _MEMORY], self._base, self.policy.memory()
 
     def recall(self, memory: Any) -> None:

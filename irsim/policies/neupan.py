@@ -129,7 +129,7 @@ class NeuPanPolicy(Policy):
         return decided
 
     def remarks(self) -> Mapping[int, str]:
-        """What the planner of a robot said last, where it has stopped the robot."""
+        """The last remark of the planner of each robot that it has stopped."""
         return self._remarks
 
     def _remark(self, robot: int, info: Mapping[str, Any]) -> None:
@@ -285,7 +285,7 @@ def _corners(robot: dict[str, Any]) -> Floats | None:
     except (TypeError, ValueError, OverflowError):
         corners = np.zeros((0, 2))
     if not len(corners) or not (np.abs(corners) <= _LARGEST_M).all():
-        what = "the section robot has vertices, a length, a width or a wheelbase that are no lengths"
+        what = "the section robot has vertices, a length, a width or a wheelbase that are not lengths"
         raise PolicyError("policy-failed", what, "write meters, such as length: 1.6 and width: 2.0")
     return corners
 

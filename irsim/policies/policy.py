@@ -136,7 +136,7 @@ class Policy(ABC):
         """
 
     def memory(self) -> dict[str, Any] | None:
-        """What snapshots keep of the policy: its attributes if it has a ``reset``, else nothing."""
+        """The part of the policy that snapshots keep: its attributes if it has a ``reset``, else nothing."""
         if type(self).reset is Policy.reset:
             return None
         return {name: value for name, value in vars(self).items() if name != "_worlds_in_use"}

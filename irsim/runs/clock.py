@@ -33,7 +33,7 @@ def clock_was_set(mark: Path) -> bool:
 
 
 def _boot() -> str:
-    """The name of this start of the system; empty where the system has none."""
+    """The name of this start of the system; empty where the system provides no such name."""
     with suppress(OSError, ValueError):
         return _BOOT_ID.read_text(encoding="ascii").strip()
     return ""

@@ -157,7 +157,7 @@ def lock_file(descriptor: int, *, wait: bool, alone: bool = False) -> bool | Non
 
     Args:
         descriptor: The file.
-        wait: Wait for others, and lock it for this process alone.
+        wait: Wait for other processes, and lock it for this process alone.
         alone: Lock it for this process alone, without waiting.
 
     Returns:

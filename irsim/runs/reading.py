@@ -32,7 +32,7 @@ Flag = Annotated[bool, Field(strict=True)]
 
 
 class _Meta(BaseModel):
-    """The keys that ``run.json`` must have, and the types of others that it may have."""
+    """The keys that ``run.json`` must have, and the types of its optional keys."""
 
     names: list[Name]
     sensors: list[tuple[Name, Annotated[int, Field(strict=True, gt=0, le=10**7)]]]

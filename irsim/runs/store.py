@@ -196,7 +196,7 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
 
 
 def is_run(name: str | Path) -> bool:
-    """Whether a name is that of a run here: ``last``, an id, or a folder; the name of a file is not."""
+    """Whether a name names a run here: ``last``, an id, or a folder; the name of a file is not."""
     if str(name) == "last" or (Path(name) / META).is_file():
         return not Path(name).is_file()
     return bool(ID.fullmatch(str(name))) and (runs_folder() / str(name) / META).is_file()

@@ -113,7 +113,7 @@ class _Unpickler(pickle.Unpickler):
 
 
 def _shared(simulation: Simulation) -> dict[Any, Any]:
-    """What both sides have: name -> value."""
+    """The values that both sides have, by name."""
     scenario = simulation.scenario
     shared: dict[Any, Any] = {"simulation": simulation, "world": simulation.world, "state": simulation.state}
     shared |= {"scenario": scenario, "settings": scenario.world}

@@ -1,4 +1,4 @@
-"""What a message of a client must look like, and the answer to one that does not."""
+"""The required form of a client's message, and the answer to a message that lacks it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["MAX_FRAME", "BadFrame", "frame"]
 MAX_FRAME = 16 * 1024**2
 """Size of the longest message [bytes]."""
 _MAX_SEARCHED = 64 * 1024
-"""Number of bytes of a message that is no JSON in which its id is looked for."""
+"""Number of leading bytes that are searched for the id of a message that is not JSON."""
 _TOKEN = re.compile(r'"[^"\\]*(?:\\[\s\S][^"\\]*)*"|"[\s\S]*|[\[\]{}:,]|[^\s"\[\]{}:,]+')
 
 
@@ -26,7 +26,7 @@ class BadFrame(Exception):
 
     Attributes:
         code: Code of JSON-RPC.
-        what: What is wrong.
+        what: Description of the error.
         id: The id of the message, as far as it can be read.
     """
 
@@ -44,7 +44,7 @@ def frame(data: bytes) -> JSONRPCMessage:
     """Read a message.
 
     Raises:
-        BadFrame: It is too long, no JSON, or no message of JSON-RPC.
+        BadFrame: The message is too long, is not JSON, or is not a message of JSON-RPC.
     """
     if len(data) > MAX_FRAME:
         what = f"the message is longer than {MAX_FRAME:,} bytes"
@@ -55,17 +55,17 @@ def frame(data: bytes) -> JSONRPCMessage:
         raise BadFrame(PARSE_ERROR, f"the message is not JSON: {error}", _searched_id(data)) from None
     if not isinstance(given, dict):
         what = "batches are not read; send each message alone" if isinstance(given, list) else "it must be an object"
-        raise BadFrame(INVALID_REQUEST, f"the message is no request of JSON-RPC 2.0: {what}")
-    own = "method" in given or not given.keys() & {"result", "error"}  # other ids are those of this server's requests
+        raise BadFrame(INVALID_REQUEST, f"the message is not a request of JSON-RPC 2.0: {what}")
+    own = "method" in given or not given.keys() & {"result", "error"}  # an answer has the id of this server's request
     known = given["id"] if own and _is_id(given.get("id")) else None
     if own and "id" in given and known is None:
-        what = "the message is no request of JSON-RPC 2.0: its id must be a text or a whole number"
+        what = "the message is not a request of JSON-RPC 2.0: its id must be a text or a whole number"
         raise BadFrame(INVALID_REQUEST, what)
     try:
         return jsonrpc_message_adapter.validate_python(given, by_name=False)
     except ValidationError:
         what = 'it must have "jsonrpc": "2.0", a "method" that is text, and "params" that are an object, if any'
-        raise BadFrame(INVALID_REQUEST, f"the message is no request of JSON-RPC 2.0: {what}", known) from None
+        raise BadFrame(INVALID_REQUEST, f"the message is not a request of JSON-RPC 2.0: {what}", known) from None
 
 
 def _is_id(value: Any) -> bool:
@@ -73,7 +73,7 @@ def _is_id(value: Any) -> bool:
 
 
 def _searched_id(data: bytes) -> str | int | None:
-    """The id at the first level of what may be no JSON at all."""
+    """The id at the first level of a message that may not be JSON."""
     tokens = _TOKEN.findall(data[:_MAX_SEARCHED].decode("utf-8", "replace"))
     depth = 0
     for position, token in enumerate(tokens[:-2]):

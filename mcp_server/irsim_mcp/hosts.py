@@ -77,10 +77,10 @@ def host_of(text: str) -> str:
 def anywhere(where: Address) -> bool:
     """Whether a server listens at every address of this machine, also if that address is given by a name."""
     try:
-        found = [str(one[4][0]) for one in socket.getaddrinfo(where.host, where.port, type=socket.SOCK_STREAM)]
+        matches = [str(one[4][0]) for one in socket.getaddrinfo(where.host, where.port, type=socket.SOCK_STREAM)]
     except (OSError, UnicodeError):  # binding will say why
-        found = []
-    return any(_unspecified(host_of(host)) for host in (where.host, *found))
+        matches = []
+    return any(_unspecified(host_of(host)) for host in (where.host, *matches))
 
 
 def _unspecified(host: str) -> bool:
@@ -98,7 +98,7 @@ def allowed_hosts(where: Address, names: Sequence[str]) -> frozenset[str]:
         names: Names and addresses of ``--allow-host``, with or without a port.
 
     Raises:
-        HttpRefused: A name is none.
+        HttpRefused: A name is not a host name.
     """
     more = []
     for name in names:

@@ -1,4 +1,4 @@
-"""The log of the server on standard error, which needs no files and stops nothing if nobody reads it."""
+"""The log of the server on standard error, which needs no files and blocks nothing if it is not read."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def log_to_stderr() -> None:
 
 
 class _Plain(logging.Handler):
-    """Writes messages without a buffer, and leaves out those that would have to wait for a reader."""
+    """Writes messages without a buffer, and skips each message that would have to wait for a reader."""
 
     def emit(self, record: logging.LogRecord) -> None:
         with suppress(Exception):  # a log must not end a server

@@ -167,7 +167,7 @@ class _Wire:
 
 
 def _json(message: JSONRPCMessage) -> bytes:
-    """A message as JSON; what is no Unicode text, as names of files can be, is replaced."""
+    """A message as JSON; parts that are not Unicode text, as in some names of files, are replaced."""
     try:
         return message.model_dump_json(by_alias=True, exclude_unset=True).encode()
     except ValueError:

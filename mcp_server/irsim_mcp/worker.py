@@ -47,7 +47,7 @@ _MAX_READERS = 2
 _POLL_S = 0.02
 """Time between two looks whether a process for short work is free [s]."""
 NOT_STARTED_FIX = "call again when this machine has more memory, processes and open files to spare"
-"""What helps if a process could not be started."""
+"""The advice if a process could not be started."""
 _INHERITED = (
     ("APPDATA", "LOCALAPPDATA", "PATHEXT", "SYSTEMDRIVE", "SYSTEMROOT", "TEMP", "TMP", "USERPROFILE")
     if os.name == "nt"
@@ -192,7 +192,7 @@ def _failure_of(code: int | None, seconds: float, reached: tuple[int, int] | Non
 
 
 def workspace_data(workspace: Workspace) -> dict[str, Any]:
-    """What a worker is told of the workspace: its path, and the descriptor that it inherits, if there is one."""
+    """The path of the workspace, and the descriptor of it that a worker inherits, if there is one."""
     return {"path": str(workspace.root), "descriptor": workspace.folder and workspace.folder.descriptor}
 
 
@@ -223,7 +223,7 @@ def _user_site() -> str:
 
 
 def not_started(error: OSError) -> str:
-    """What is said of a process that the system did not start."""
+    """The message about a process that the system did not start."""
     return f"the process that does the work could not be started: {error.strerror or error}"
 
 

@@ -62,8 +62,8 @@ def test_some_extremes(irsim: Run) -> None:
     check(irsim, 3, 60)
 
 
-@pytest.mark.slow(10)
-@pytest.mark.rotates(10)
-@pytest.mark.parametrize("part", range(10))
+@pytest.mark.slow(30)
+@pytest.mark.rotates(40)
+@pytest.mark.parametrize("part", range(40))
 def test_all_extremes(irsim: Run, part: int) -> None:
-    check(irsim, part, 10)
+    check(irsim, part, 40)

@@ -1,4 +1,4 @@
-"""Damaged files that somebody met: each is an error with a code, which says what is wrong."""
+"""Damaged files from reports: each leads to an error with a code, which says what is wrong."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def logged_head(text: str) -> BenchmarkResult:
 
 
 def test_a_log_of_other_seeds_with_good_digests_is_not_believed(workspace: Path) -> None:
-    """The digests are right, and the seed is not that of the plan."""
+    """The digests are right, but the seed differs from the seed of the plan."""
     (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
     result = irsim.benchmark("room.yaml", "dash", seeds=[1], steps=3, log="log.jsonl")
     head = logged_head((workspace / "log.jsonl").read_text().split("\n", 1)[0])

@@ -28,7 +28,7 @@ from irsim_mcp.limits import ServerLimits, scenario_limits
 __all__ = ["How", "Tally", "Wrong", "try_all"]
 
 How = Literal["run", "render", "benchmark"]
-"""What is done with a document that validates."""
+"""The task for a document that validates."""
 
 _SECONDS = 10.0
 """Processor time of one document: twice what the worst ones take, because machines differ, and their days do, too."""
@@ -65,7 +65,7 @@ def try_all(documents: Iterable[tuple[int, str]], *, workers: int = 2, how: How 
     Args:
         documents: (number, text).
         workers: Processes at a time.
-        how: What is done with each.
+        how: The task for each document.
     """
     tally, rest = Tally(), iter(documents)
     with tempfile.TemporaryDirectory() as folder:

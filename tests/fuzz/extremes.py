@@ -63,7 +63,7 @@ Place = tuple[tuple[str | int, ...], dict[str, Any], Any]
 
 def places() -> list[Place]:
     """Every number of the language, in a document in which it has an ordinary value."""
-    found: dict[str, Place] = {}
+    matches: dict[str, Place] = {}
     root = schema()["$defs"]["Scenario"]["properties"]
     for section, depth in (("world", 0), ("gui", 0), ("robot", 0), ("obstacle", _LIMIT)):
         for entry in _objects(root[section]):
@@ -75,12 +75,12 @@ def places() -> list[Place]:
                 whole = (section, *((0,) if listed else ()), *path)
                 if _CONTACT & set(path):
                     scene["world"] = {**scene["world"], "collision_mode": "contact"}
-                found.setdefault(json.dumps([whole, scene]), (whole, number, scene))
+                matches.setdefault(json.dumps([whole, scene]), (whole, number, scene))
                 for drive in _DRIVES if listed and _CONTROLS & set(path) else ():
                     other = copy.deepcopy(scene)
                     other[section][0]["kinematics"] = {"name": drive}
-                    found.setdefault(json.dumps([whole, other]), (whole, number, other))
-    return list(found.values())
+                    matches.setdefault(json.dumps([whole, other]), (whole, number, other))
+    return list(matches.values())
 
 
 def documents(part: int = 0, parts: int = 1, more: bool = True) -> Iterator[tuple[str, str]]:
@@ -103,10 +103,10 @@ def documents(part: int = 0, parts: int = 1, more: bool = True) -> Iterator[tupl
 def bounds_of(number: dict[str, Any]) -> list[float]:
     """The extreme values that a part of the schema allows."""
     low, high = number.get("minimum"), number.get("maximum")
-    found = [value for value in (low, high) if value is not None]
+    matches = [value for value in (low, high) if value is not None]
     if "exclusiveMinimum" in number:
-        found.append(math.nextafter(number["exclusiveMinimum"], math.inf) if number["type"] == "number" else 1)
-    return found
+        matches.append(math.nextafter(number["exclusiveMinimum"], math.inf) if number["type"] == "number" else 1)
+    return matches
 
 
 def _objects(node: Any) -> list[dict[str, Any]]:

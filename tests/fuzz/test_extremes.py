@@ -23,10 +23,10 @@ def check(part: int, parts: int, how: How = "run") -> None:
 
 
 def test_the_language_has_hundreds_of_numbers_at_many_extremes() -> None:
-    found = places()
-    assert len({path for path, _, _ in found}) > 300
+    matches = places()
+    assert len({path for path, _, _ in matches}) > 300
     assert len(EXTREMES) == 21
-    assert all(bounds_of(number) or "acce" in path for path, number, _ in found)
+    assert all(bounds_of(number) or "acce" in path for path, number, _ in matches)
 
 
 def test_some_extremes() -> None:

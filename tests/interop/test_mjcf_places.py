@@ -37,7 +37,7 @@ _MODEL = """<mujoco>
 
 
 def _corners(model, data, number: int) -> np.ndarray:
-    """(N, 2) corners of a geom, seen from above; those of a capsule are the ends of its axis."""
+    """(N, 2) corners of a geom, seen from above; a capsule has the ends of its axis instead."""
     if model.geom_type[number] == mujoco.mjtGeom.mjGEOM_MESH:
         local = model.mesh_vert.copy()
     elif model.geom_type[number] == mujoco.mjtGeom.mjGEOM_CAPSULE:

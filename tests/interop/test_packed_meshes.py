@@ -1,4 +1,4 @@
-"""Meshes as other programs pack them: the map is the same as that of the plain file."""
+"""Meshes as other programs pack them: the map is the same as from the plain file."""
 
 from __future__ import annotations
 

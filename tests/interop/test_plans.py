@@ -1,4 +1,4 @@
-"""Floor plans in DXF as ezdxf writes them: the occupied area is that of the drawing."""
+"""Floor plans in DXF as ezdxf writes them: the occupied area equals the area of the drawing."""
 
 from __future__ import annotations
 

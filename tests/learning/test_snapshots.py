@@ -28,7 +28,7 @@ def as_bytes(value: Any) -> Any:
 
 
 def played(env: Any, actions: list[Any]) -> list[Any]:
-    """What steps and resets return."""
+    """The values that steps and resets return."""
     seen = []
     for action in actions:
         step = env.step(action)

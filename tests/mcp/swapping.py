@@ -36,7 +36,7 @@ class Swap:
         """Swap."""
         self.count += 1
         if self.linked:
-            posix.unlink(self.place)  # those of os are others while a folder is held
+            posix.unlink(self.place)  # while a folder is held, os has other functions
             with suppress(FileNotFoundError):  # it did not exist
                 posix.rename(self.aside, self.place)
         else:
@@ -80,7 +80,7 @@ def swapping(swap: Swap, *, first: bool = False) -> Iterator[None]:
     """Swap before each call of the system that opens, makes or moves a file, in this process.
 
     Args:
-        swap: What is swapped.
+        swap: The swap to make.
         first: Begin with the link.
     """
     global _active
@@ -96,7 +96,7 @@ def swapping(swap: Swap, *, first: bool = False) -> Iterator[None]:
 
 
 class Double:
-    """A copy of a folder beside it, in which each name of a robot is another: nobody may read or write it.
+    """A copy of a folder beside it, in which a robot has another name: no program may read or write it.
 
     Args:
         folder: The folder.
@@ -122,15 +122,15 @@ class Double:
         self._known = self._state()
 
     def _state(self) -> dict[str, tuple[float, float]]:
-        found = {}
+        matches = {}
         for folder, folders, files in os.walk(self.folder, topdown=False):
             for path in (os.path.join(folder, name) for name in (*folders, *files)):
                 status = os.stat(path)
-                found[path] = (0.0 if os.path.isdir(path) else status.st_atime, status.st_mtime)
-        return found
+                matches[path] = (0.0 if os.path.isdir(path) else status.st_atime, status.st_mtime)
+        return matches
 
     def changes(self) -> set[str]:
-        """What was read, written, made or removed."""
+        """Paths that were read, written, made or removed."""
         now = self._state()
         return {path for path in {*now, *self._known} if now.get(path) != self._known.get(path)}
 

@@ -1,4 +1,4 @@
-"""Equal questions at the same time: one process answers all of them, also with an error, and nobody waits for ever."""
+"""Equal questions at the same time: one process answers them all, also with an error, and no client waits for ever."""
 
 from __future__ import annotations
 

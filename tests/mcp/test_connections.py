@@ -84,7 +84,7 @@ def test_idle_connections(empty: Path, limit: int, count: int, most: int) -> Non
             assert received(clients[-1]).startswith(b"HTTP/1.1 503 ")
             refused = sum(received(client).startswith(b"HTTP/1.1 503 ") for client in reversed(clients[most:]))
             assert process.poll() is None
-            assert refused >= (count - most) / 2  # on a busy machine, others get the place of those that were too slow
+            assert refused >= (count - most) / 2  # on a busy machine, others get the places of slow ones
         assert answers(url)
         assert memory(process) - before < 20
 
@@ -126,7 +126,7 @@ def serving(app: Any) -> Iterator[tuple[Callable[[], socket.socket], Any]]:
 
 
 async def plain(scope: Any, receive: Any, send: Any) -> None:
-    """An application that answers with 20 MB to GET, and with the size of the body to others."""
+    """An application that answers with 20 MB to GET, and with the size of the body to the rest."""
     if scope["type"] != "http":
         return
     size = 20_000_000

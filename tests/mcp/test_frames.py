@@ -1,4 +1,4 @@
-"""Messages that are none: over both transports each is answered with an error, and nothing ends or waits for ever."""
+"""Input that is not a message: both transports answer it with an error, and nothing ends or waits for ever."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ BAD: dict[str, tuple[bytes, int, Any]] = {
 
 
 def asked(process: subprocess.Popen[bytes], *lines: bytes) -> list[dict[str, Any]]:
-    """What a server answers to so many lines, each of which has an answer."""
+    """The answers of a server to these lines, each of which has one."""
     assert process.stdin is not None
     assert process.stdout is not None
     process.stdin.write(b"".join(line + b"\n" for line in lines))

@@ -226,9 +226,9 @@ async def test_other_machines_connect_by_names_that_were_told(empty: Path) -> No
     ],
 )  # fmt: skip
 def test_every_spelling_of_all_addresses_needs_names(empty: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
-    found = socket.getaddrinfo
+    resolve = socket.getaddrinfo
     monkeypatch.setattr(
-        socket, "getaddrinfo", lambda host, *a, **k: found(host.replace("every.example", "::"), *a, **k)
+        socket, "getaddrinfo", lambda host, *a, **k: resolve(host.replace("every.example", "::"), *a, **k)
     )
     with pytest.raises(HttpRefused, match="needs a token"):
         application(build_server(empty), address(f"{text}:0"), None)

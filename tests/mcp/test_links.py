@@ -1,4 +1,4 @@
-"""Links that change between check and use: nothing outside the workspace is read or written, whoever swaps what when.
+"""Links that change between check and use: nothing outside the workspace is read or written, whatever is swapped when.
 
 A worker's tasks run in this process while the workspace is held, as the worker holds it, with a hook that swaps a place
 of the workspace for a link to its double outside before each call that opens, makes or moves a file.
@@ -59,7 +59,7 @@ class Place:
         self.double = Double(root, "rover", "spied")
 
     def do(self, task: str, **arguments: Any) -> str:
-        """What a worker does, which answers with a text, or with the code of an error and what is said of it."""
+        """Do a task as a worker does, and return the text of its answer, or the code of an error and its data."""
         limits = asdict(scenario_limits(LIMITS, self.workspace.root))
         work = {"task": task, "arguments": arguments, "workspace": str(self.workspace.root), "limits": limits}
         with self.workspace.hold():

@@ -43,10 +43,10 @@ def _kinds(part: dict[str, Any]) -> list[str]:
 
 @pytest.mark.parametrize("file", SCHEMAS, ids=lambda file: file.name)
 def test_each_number_of_a_schema_has_a_least_and_a_largest_value(file: Path) -> None:
-    found = list(numbers(json.loads(file.read_text(encoding="utf-8"))))
+    matches = list(numbers(json.loads(file.read_text(encoding="utf-8"))))
     open_ended = [
         "/".join(path)
-        for path, part in found
+        for path, part in matches
         if not (
             ("minimum" in part or "exclusiveMinimum" in part)
             and ("maximum" in part or "exclusiveMaximum" in part or set(path) & set(UNLIMITED))

@@ -26,10 +26,10 @@ KNOWN = {
     "irsim/learning/workers/process.py": PEER,
     "irsim/rendering/saving.py": OWN,
     "irsim/runs/replay/drawing.py": OWN,
-    "mcp_server/irsim_mcp/frames.py": "says which part of a message is no JSON",
+    "mcp_server/irsim_mcp/frames.py": "says which part of a message is not JSON",
     "mcp_server/irsim_mcp/job.py": PEER,
     "mcp_server/irsim_mcp/jobs.py": PEER,
-    "mcp_server/irsim_mcp/tool.py": "a text that stays a text if it is no JSON",
+    "mcp_server/irsim_mcp/tool.py": "a text that stays a text if it is not JSON",
     "mcp_server/irsim_mcp/worker.py": PEER,
     "evals/irsim_evals/baselines/edits.py": "texts of the package",
     "evals/irsim_evals/baselines/repair.py": "texts of the package",
@@ -52,7 +52,7 @@ READING = {
 
 def readers() -> dict[str, set[str]]:
     """File -> calls that read, for all Python of the three packages."""
-    found: dict[str, set[str]] = {}
+    matches: dict[str, set[str]] = {}
     for package in ("irsim", "mcp_server", "evals"):
         for path in sorted((ROOT / package).rglob("*.py")):
             try:
@@ -61,13 +61,13 @@ def readers() -> dict[str, set[str]]:
                 continue
             names = {ast.unparse(node.func) for node in ast.walk(tree) if isinstance(node, ast.Call)}
             if reading := names & READING:
-                found[path.relative_to(ROOT).as_posix()] = reading
-    return found
+                matches[path.relative_to(ROOT).as_posix()] = reading
+    return matches
 
 
 @pytest.mark.one_python
 def test_files_of_users_have_one_reader_for_each_kind() -> None:
-    found = readers()
-    others = {file: sorted(calls) for file, calls in found.items() if file not in KNOWN}
+    matches = readers()
+    others = {file: sorted(calls) for file, calls in matches.items() if file not in KNOWN}
     assert not others, "use irsim.common.records, irsim.common.yaml.plain, irsim.common.archives or .pictures"
-    assert set(KNOWN) <= set(found), "a file that reads nothing any more"
+    assert set(KNOWN) <= set(matches), "a file that reads nothing any more"

@@ -14,7 +14,7 @@ CALLED_BY_OTHERS = {
     "the import system": "__getattr__ create_module get_code is_package",
     "expat": "doctype namespaced",
     "Matplotlib": "get_transforms get_window_title",
-    "the MCP SDK": "methods pre_parse_json",
+    "the MCP SDK": "methods pre_parse_json run_stdio_async",
     "typer": "on_broken_pipe",
     "learners, by message": "_advance _renew _set_level",
     "drives of users": "coast",

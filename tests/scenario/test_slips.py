@@ -14,9 +14,9 @@ ROBOT = "kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, behavior:
 @pytest.mark.parametrize("color", ["#ff0000", "#f00", "#ff0000cc"])
 def test_a_color_that_is_a_comment_is_a_warning(color: str) -> None:
     text = f"robot:\n  kinematics: {{name: diff}}\n  goal: [5, 5]\n  color: {color}\n  plot:\n    obj_color: {color}\n"
-    found = [one for one in irsim.validate(text=text).findings if one.code == "hash-comment"]
-    assert [one.line for one in found] == [4, 6]
-    assert all(f"'{color}'" in str(one.fix) for one in found)
+    matches = [one for one in irsim.validate(text=text).findings if one.code == "hash-comment"]
+    assert [one.line for one in matches] == [4, 6]
+    assert all(f"'{color}'" in str(one.fix) for one in matches)
 
 
 @pytest.mark.parametrize("text", ["robot: #ff\n", "robot: # 1 robot\n", "world: {name: '#ff0000'}\n"])
@@ -27,14 +27,14 @@ def test_other_comments_are_none(text: str) -> None:
 @pytest.mark.parametrize("use", ["{<<: *robot, goal: [5, 5]}", "*robot"])
 def test_a_key_that_holds_an_anchor_is_not_advised_away(use: str) -> None:
     text = f"common: &robot {{{ROBOT}}}\nrobot:\n  - {use}\n"
-    [found] = [one for one in irsim.validate(text=text).findings if one.code == "unknown-key"]
-    assert "custom" in str(found.fix)
+    [matches] = [one for one in irsim.validate(text=text).findings if one.code == "unknown-key"]
+    assert "custom" in str(matches.fix)
     assert irsim.validate(text=f"custom: {{common: &robot {{{ROBOT}}}}}\nrobot:\n  - {use}\n").valid
 
 
 def test_a_key_without_use_is_advised_away() -> None:
-    [found] = [one for one in irsim.validate(text=f"common: {{{ROBOT}}}\n").findings if one.code == "unknown-key"]
-    assert found.fix == "remove it"
+    [matches] = [one for one in irsim.validate(text=f"common: {{{ROBOT}}}\n").findings if one.code == "unknown-key"]
+    assert matches.fix == "remove it"
 
 
 @pytest.mark.parametrize("missing", ["tensorboard", "gymnasium"])

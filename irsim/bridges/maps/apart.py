@@ -45,7 +45,7 @@ def read_apart(
         path: The file.
         module: The module that reads it: its ``main`` calls :func:`serve`.
         limits: Most triangles, and the time for reading.
-        request: What else the reader is told.
+        request: Further keys for the reader.
 
     Raises:
         BridgeError: The file cannot be used, or takes too much memory or time.

@@ -29,7 +29,7 @@ def outlines_within(outlines: Outlines, bounds: tuple[float, float, float, float
     """The areas of all things, within bounds [m].
 
     Raises:
-        BridgeError: There are none.
+        BridgeError: There are no such areas.
     """
     regions = [thing.region for thing in outlines.things]
     if bounds is not None:

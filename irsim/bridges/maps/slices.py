@@ -1,4 +1,4 @@
-"""What a robot meets of solids: the outline of the part of a solid between two heights."""
+"""The parts of solids that a robot can meet: the outline of the part of a solid between two heights."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def ellipsoid_points(radii: Floats) -> Floats:
 
 
 def slice_of_hull(points: Floats, low: float, high: float, *, rings: bool = False) -> Any:
-    """The convex outline of the part of a convex solid between two heights; None if there is none.
+    """The convex outline of the part of a convex solid between two heights; None if no part is there.
 
     Args:
         points: (N, 3) corners of the solid.
@@ -98,7 +98,7 @@ def slice_of_hull(points: Floats, low: float, high: float, *, rings: bool = Fals
 
 
 def slice_of_mesh(triangles: Triangles, low: float, high: float) -> Any:
-    """The outline of the part of a mesh between two heights; None if there is none.
+    """The outline of the part of a mesh between two heights; None if no part is there.
 
     It is the cut at the lower height and, from there on, whatever surface there is above it. Surfaces without an inside
     count as thin walls.
@@ -135,7 +135,7 @@ def _cut(corners: Floats, height: float) -> Floats:
     crossing = corners[above.any(axis=1) & ~above.all(axis=1)]
     above = crossing[..., 2] > height
     single = np.where((above.sum(axis=1) == 1)[:, None], above, ~above)
-    order = (np.argmax(single, axis=1)[:, None] + [0, 1, 2]) % 3
+    order = (np.argmax(single, axis=1)[:, None] + np.arange(3)) % 3
     a, b, c = np.take_along_axis(crossing, order[..., None], axis=1).transpose(1, 0, 2)
     ends = [a + (other - a) * ((height - a[:, 2]) / (other[:, 2] - a[:, 2]))[:, None] for other in (b, c)]
     lines = np.stack(ends, axis=1)[..., :2]

@@ -186,7 +186,7 @@ class Outlined:
     """Something that stands in the way.
 
     Attributes:
-        name: Its name in the file; empty if it has none.
+        name: Its name in the file; empty if it has no name.
         region: The area that it occupies, a polygon or polygons of shapely [m], z up.
         circle: Center and radius if it is a disk [m].
     """
@@ -201,7 +201,7 @@ class Outlines:
     """Outlines of all that stands in the way; everything else is free.
 
     Attributes:
-        things: What stands in the way.
+        things: The things that stand in the way.
         frame: Convention of the axes of the file's world, see :mod:`irsim.bridges.frames`.
         free: The area that is free by what the file says, such as roads; None for everything between the things.
         meters_per_unit: Length of a unit of the file [m].

@@ -270,8 +270,8 @@ def import_pedestrians(
         ("fps", fps), ("scale", scale), ("length", episodes.length), ("step_time", layout.step_time),
         ("radius", layout.radius), ("windows", episodes.windows),
     ):  # fmt: skip
-        if value is not None and not (math.isfinite(value) and value > 0):
-            raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} above 0")
+        if value is not None and not 1e-6 <= value <= 1e9:
+            raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} from 1e-6 to 1e9")
     if episodes.windows > MAX_SCENARIOS:
         what = f"a suite has at most {MAX_SCENARIOS} windows, got {episodes.windows}"
         raise ArgumentError(what, "give fewer windows")

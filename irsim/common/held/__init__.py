@@ -1,14 +1,14 @@
-"""A folder that is held by a descriptor: whoever changes links below it, or replaces it, leads nobody out of it.
+"""A folder that is held by a descriptor: no access leaves it, even if links below it change or it is replaced.
 
 Programs check a path and then open it, and in between others may put a link in its place. Below a held folder there is
 no such moment: each component is opened from the descriptor of the one above it, by calls that follow no link. A link
 is read and its target walked in the same way, if it stays in the folder; one that leads out is refused. Pipes, devices
 and, for writing, further names of a file (hard links) are refused, too.
 
-While a folder is held, the functions of Python that take paths do so for all paths below it: ``open``, those of ``os``
-and, through them, ``pathlib``, ``shutil``, NumPy, Pillow and the like. Relative paths start at the folder. Libraries
-that open files themselves do not: what they write goes to :func:`apart` first. Without ``dir_fd`` (Windows) nothing is
-held.
+While a folder is held, the functions of Python that take paths do so for all paths below it: ``open``, the functions
+of ``os`` and, through them, ``pathlib``, ``shutil``, NumPy, Pillow and the like. Relative paths start at the folder.
+Libraries that open files themselves do not: what they write goes to :func:`apart` first. Without ``dir_fd`` (Windows)
+nothing is held.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def hold_for_good(path: str, descriptor: int) -> None:
 
 
 def not_held() -> AbstractContextManager[None]:
-    """Hold no folder in the block, which names no files of others."""
+    """Hold no folder in the block, which names only files of the program itself."""
     return hold(None)
 
 
@@ -53,7 +53,7 @@ def apart(target: Path) -> Iterator[Path]:
     """Where to write a file or folder by a library that opens files itself: elsewhere while a folder is held.
 
     Args:
-        target: What is wanted, which does not exist; it is there after the block.
+        target: The wanted file or folder, which does not exist yet; it is there after the block.
     """
     if current() is None:
         yield target

@@ -1,4 +1,4 @@
-"""The functions that take the place of ``open`` and those of ``os``, and ask which folder is held."""
+"""Functions that replace ``open`` and functions of ``os``, and ask which folder is held."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PROCESS: list[Folder] = []
 
 
 def current() -> Folder | None:
-    """The folder that is held here; None if there is none."""
+    """The folder that is held here; None without one."""
     return HELD.get(PROCESS[0] if PROCESS else None)
 
 

@@ -142,7 +142,7 @@ class Folder:
 
 
 def _link(name: str, folder: int) -> str | None:
-    """Where a link leads; None for what is no link."""
+    """Where a link leads; None if the name is not a link."""
     with suppress(OSError):
         return str(REAL.readlink(name, dir_fd=folder))
     return None

@@ -324,15 +324,15 @@ class _Composer:
             return
         lines = self.lines = self.lines or self.text.splitlines()
         line = lines[event.end_mark.line] if event.end_mark.line < len(lines) else ""
-        found = _COLOR_COMMENT.match(line, event.end_mark.column)
-        if found is not None and (len(found[1]) > len("#1234") or "color" in str(frame.key)):
+        matches = _COLOR_COMMENT.match(line, event.end_mark.column)
+        if matches is not None and (len(matches[1]) > len("#1234") or "color" in str(frame.key)):
             self._problem(
                 "hash-comment",
-                f"the value is empty, because '#' begins a comment: {found[1]}",
+                f"the value is empty, because '#' begins a comment: {matches[1]}",
                 event,
                 severity="warning",
-                given=found[1],
-                fix=f"write it in quotes: '{found[1]}'",
+                given=matches[1],
+                fix=f"write it in quotes: '{matches[1]}'",
             )
 
     def _surprise(self, kind: str, text: str, value: Any, event: Any) -> None:

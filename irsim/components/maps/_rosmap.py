@@ -51,7 +51,7 @@ class RosMeta:
         negate: Whether white is occupied.
         occupied_thresh, free_thresh: Occupancies (0 to 1) above and below which a pixel is occupied and free.
         mode: ``trinary``, ``scale`` or ``raw``.
-        remarks: What the user should know about how the file was read.
+        remarks: Notes for the user about how the file was read.
     """
 
     image: str
@@ -96,7 +96,7 @@ def read_meta(path: Path, name: str) -> RosMeta:
     if not isinstance(origin, list) or len(origin) not in (2, 3):
         raise _wrong(name, "'origin' must be [x, y, yaw]")
     turned = _as_number(origin[2]) if len(origin) == 3 else 0.0
-    remarks = () if turned is None or not math.isnan(turned) else ("the yaw of its origin is no number: 0 is taken",)
+    remarks = () if turned is None or not math.isnan(turned) else ("the yaw of its origin is not a number: 0 is taken",)
     x, y, yaw = (_number(value, name, "origin") for value in [*origin[:2], *([] if remarks else origin[2:]), 0.0][:3])
     occupied, free = (
         _number(data.get(key, standard), name, key)
@@ -225,12 +225,12 @@ def find_picture(image: str, path: Path, site: MapSite) -> Path:
         if not (near and (elsewhere.anchor or "\\" in image)):
             raise
         try:
-            found = site.find(near, beside=path.parent)
+            located = site.find(near, beside=path.parent)
         except MapProblem:
             raise problem from None
     said = f"the picture '{clean(image)}' cannot be used here: '{clean(near)}' beside the YAML file is taken instead"
     site.notes.append(("map-read-as", said))
-    return found
+    return located
 
 
 def _extent(shape: tuple[int, ...], meta: RosMeta) -> tuple[float, float, tuple[float, float]]:
@@ -273,7 +273,7 @@ def _number(value: Any, name: str, key: str) -> float:
     """A number as readers of ROS take it: an exponent needs no point, quotes change nothing, true is 1.
 
     Raises:
-        MapProblem: It is no number, or not finite.
+        MapProblem: The value is not a number, or not finite.
     """
     number = _as_number(value)
     if number is not None and math.isfinite(number):
@@ -282,7 +282,7 @@ def _number(value: Any, name: str, key: str) -> float:
 
 
 def _as_number(value: Any) -> float | None:
-    """The number that a value stands for; None if it is none."""
+    """The number that a value stands for; None if the value is not a number."""
     if isinstance(value, str):
         return (
             float(value.replace(".inf", "inf").replace(".nan", "nan"))

@@ -121,7 +121,7 @@ class PythonDrives:
                 wide.reset()
 
     def memory(self) -> Any:
-        """What the drives remember from step to step."""
+        """The state that the drives keep from step to step."""
         return self._handlers, self._wide
 
     def recall(self, memory: Any) -> None:

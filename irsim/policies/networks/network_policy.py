@@ -144,7 +144,7 @@ class LayerPolicy(NetworkPolicy):
         self._slots = Slots(plan.memory, self._dtype) if plan.memory else None
 
     def memory(self) -> dict[str, Any] | None:
-        """What its layers remember of each robot."""
+        """The memory that its layers have of each robot; None if they have no memory."""
         return None if self._slots is None else {"_slots": self._slots}
 
     def compute(self, observed: Mapping[str, Value], observations: Observations) -> Array:

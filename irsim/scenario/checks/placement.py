@@ -160,7 +160,7 @@ def _stacked_objects(path: Path, entry: Entry, records: list[ObjectRecord]) -> I
     for record in records:
         round_body = record.shape.name == "circle" and not any(record.shape.center)
         pose = tuple(round(v, 9) for v in record.state[: 2 if round_body else 3])
-        places[(*pose, record.appear_time)] += 1  # who enters at another time stacks on nobody
+        places[(*pose, record.appear_time)] += 1  # objects that appear at different times do not stack
     most = max(places.values())
     if most > 1:
         where = next(pose for pose, count in places.items() if count == most)

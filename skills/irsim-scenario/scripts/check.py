@@ -93,16 +93,16 @@ def main() -> int:
     given = read_arguments()
     try:
         report = irsim.validate(given.scenario, base=given.base, simulate=True, seed=given.seed)
-        found = report.model_dump(mode="json")
-        found["findings"] = [{key: finding[key] for key in KEYS} for finding in found["findings"]]
+        matches = report.model_dump(mode="json")
+        matches["findings"] = [{key: finding[key] for key in KEYS} for finding in matches["findings"]]
         if report.changes is not None:  # facts that only repeat a key are left out
-            found["changes"]["world"] = [fact for fact in found["changes"]["world"] or [] if not fact.pop("direct")]
+            matches["changes"]["world"] = [fact for fact in matches["changes"]["world"] or [] if not fact.pop("direct")]
         answer = {
             "file": report.file,
             "valid": report.valid,
             "summary": report.summary,
             "look_at": find_remarks(report)[:MAX_ENTRIES],
-            **{key: tidy(found[key]) for key in ("findings", "dry_run", "changes") if found[key]},
+            **{key: tidy(matches[key]) for key in ("findings", "dry_run", "changes") if matches[key]},
         }
         if given.picture and report.dry_run is not None:
             answer["picture"] = tidy(draw(given, report.dry_run.seed))

@@ -36,14 +36,14 @@ def test_obstacles_stand_where_they_are() -> None:
     corner = f"<polygon>{points((0, 0), (2, 0), (0, 2))}</polygon>"
     moving = obstacle(BOX, tag="dynamicObstacle")
     file = write(obstacle(BOX, 10, 5, 1.5707963), obstacle(disc, -3, 1), obstacle(corner, 0, 0, 3.1415926), moving)
-    found = read(file, ImportOptions(), ImportLimits())
-    box, disc_, triangle = (thing.region for thing in found.things)
+    matches = read(file, ImportOptions(), ImportLimits())
+    box, disc_, triangle = (thing.region for thing in matches.things)
     assert box.bounds == pytest.approx((9, 3, 11, 7), abs=1e-5)
     assert disc_.area == pytest.approx(0.785, rel=0.01)
     assert triangle.bounds == pytest.approx((-2, -2, 0, 0), abs=1e-5)
-    assert found.notes == ["left out: 1 obstacle that can move"]
+    assert matches.notes == ["left out: 1 obstacle that can move"]
     result = import_map(file, "a.yaml")
-    area = shapely.union_all([thing.region for thing in found.things]).area
+    area = shapely.union_all([thing.region for thing in matches.things]).area
     assert result.occupied * result.resolution**2 == pytest.approx(area, rel=0.01)
 
 

@@ -43,17 +43,17 @@ def test_footprints_have_their_area_in_meters() -> None:
     two = feature("MultiPolygon", [[box(5, 0, 4, 3)], [box(12, 0, 4, 3)]])
     wall = feature("LineString", [[9.0, 15 * NORTH], [9 + 10 * EAST, 15 * NORTH]])
     file = write(yard, two, wall, feature("Point", [9, 0]))
-    found = geojson.read(file, ImportOptions(), ImportLimits())
-    assert [thing.region.area for thing in found.things] == pytest.approx([300, 12, 12, 2], rel=1e-4)
-    assert any("transverse Mercator" in note for note in found.notes)
-    assert "left out: 1 feature without an area or a line" in found.notes
+    matches = geojson.read(file, ImportOptions(), ImportLimits())
+    assert [thing.region.area for thing in matches.things] == pytest.approx([300, 12, 12, 2], rel=1e-4)
+    assert any("transverse Mercator" in note for note in matches.notes)
+    assert "left out: 1 feature without an area or a line" in matches.notes
     assert occupied(file) == pytest.approx(326, rel=0.01)
 
 
 def test_lengths_far_from_the_equator() -> None:
     degree = feature("Polygon", [[[10, 60], [10.001, 60], [10.001, 60.001], [10, 60.001], [10, 60]]])
-    found = geojson.read(write(degree), ImportOptions(), ImportLimits())
-    left, lower, right, upper = found.things[0].region.bounds
+    matches = geojson.read(write(degree), ImportOptions(), ImportLimits())
+    left, lower, right, upper = matches.things[0].region.bounds
     assert right - left == pytest.approx(55.80, abs=0.01)
     assert upper - lower == pytest.approx(111.41, abs=0.01)
 
@@ -66,7 +66,7 @@ def test_buildings_are_chosen_where_features_say_what_they_are() -> None:
 
 def test_a_unit_makes_it_a_plan() -> None:
     plan = feature("Polygon", [[[0, 0], [400000, 0], [400000, 200000], [0, 200000], [0, 0]]])
-    with pytest.raises(BridgeError, match="no longitudes and latitudes"):
+    with pytest.raises(BridgeError, match="not longitudes and latitudes"):
         import_map(write(plan), "a.yaml")
     assert occupied(write(plan), meters_per_unit=1e-5) == pytest.approx(8, rel=0.01)
 
@@ -134,11 +134,11 @@ def test_buildings_and_walls_of_an_extract() -> None:
     outer, inner = extract.way(box(30, 0, 10, 10)), extract.way(box(33, 3, 4, 4))
     extract.relation({outer: "outer", inner: "inner"}, type="multipolygon", building="yes")
     extract.items.append('<way id="x"><nd ref="0"/><nd ref="gone"/><tag k="building" v="yes"/></way>')
-    found = osm.read(extract.write(), ImportOptions(), ImportLimits())
-    assert [thing.region.area for thing in found.things] == pytest.approx([50, 10, 84], rel=1e-4)
-    assert found.things[0].name == "Hall"
-    assert "left out: 1 outline of which the file has only a part" in found.notes
-    area = shapely.union_all([thing.region for thing in found.things]).area
+    matches = osm.read(extract.write(), ImportOptions(), ImportLimits())
+    assert [thing.region.area for thing in matches.things] == pytest.approx([50, 10, 84], rel=1e-4)
+    assert matches.things[0].name == "Hall"
+    assert "left out: 1 outline of which the file has only a part" in matches.notes
+    area = shapely.union_all([thing.region for thing in matches.things]).area
     assert occupied(Path("a.osm")) == pytest.approx(area, rel=0.01)
 
 

@@ -1,4 +1,4 @@
-"""Worlds of Gazebo by hand: shapes, poses in frames, includes, what is left out, and files of others."""
+"""Worlds of Gazebo by hand: shapes, poses in frames, includes, omitted elements, and published files."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ def world(*inside: str) -> Outlines:
     return read(file, ImportOptions(), ImportLimits())
 
 
-def area(found: Outlines) -> float:
-    return float(shapely.union_all([thing.region for thing in found.things]).area)
+def area(matches: Outlines) -> float:
+    return float(shapely.union_all([thing.region for thing in matches.things]).area)
 
 
 @pytest.mark.parametrize(
@@ -64,14 +64,14 @@ def test_a_box_on_its_side_has_another_outline() -> None:
 
 def test_only_what_a_robot_meets_counts() -> None:
     low, lintel, wall = box(5, 5, 0.1), box(1, 1, 1), box(1, 0.2, 3)
-    found = world(
+    matches = world(
         model(link(shape(low, "0 0 0.05 0 0 0") + shape(lintel, "0 0 2.5 0 0 0") + shape(wall, "9 0 1.5 0 0 0")))
     )
-    assert area(found) == pytest.approx(0.2)
+    assert area(matches) == pytest.approx(0.2)
 
 
-def center(found: Outlines) -> tuple[float, float]:
-    [thing] = found.things
+def center(matches: Outlines) -> tuple[float, float]:
+    [thing] = matches.things
     return tuple(round(v, 6) + 0.0 for v in thing.region.centroid.coords[0])
 
 
@@ -123,9 +123,9 @@ def put(folder: str, text: str = TABLE) -> None:
 
 def test_models_are_included_by_path_by_root_and_by_variables(monkeypatch) -> None:
     put("beside/table")
-    found = world(include("beside/table", "<pose>5 0 0 0 0 0</pose><name>mine</name>"))
-    assert center(found) == (5, 0)
-    assert found.things[0].name == "mine/c"
+    matches = world(include("beside/table", "<pose>5 0 0 0 0 0</pose><name>mine</name>"))
+    assert center(matches) == (5, 0)
+    assert matches.things[0].name == "mine/c"
     missing = world(include("model://table"), include("model://sun"))
     assert missing.things == []
     assert missing.notes == [
@@ -166,9 +166,9 @@ def test_what_is_not_read_is_named() -> None:
     far = "<mesh><uri>https://example.org/a.stl</uri></mesh>"
     dae = "<mesh><uri>model://x/a.dae</uri></mesh>"
     actor = '<actor name="walker"/>'
-    found = world(model(link(shape(box(1, 1)) + shape(far) + shape(dae) + shape("<heightmap/>"))), robot, actor)
-    assert area(found) == pytest.approx(1)
-    text = "\n".join(found.notes)
+    matches = world(model(link(shape(box(1, 1)) + shape(far) + shape(dae) + shape("<heightmap/>"))), robot, actor)
+    assert area(matches) == pytest.approx(1)
+    text = "\n".join(matches.notes)
     for word in ("https://example.org/a.stl", "model://x/a.dae", "heightmap", "bot", "walker"):
         assert word in text
 

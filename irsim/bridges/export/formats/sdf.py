@@ -1,8 +1,8 @@
 """``sdf``: a run as a world of Gazebo, a folder with ``world.sdf`` and its meshes; needs no library.
 
-Obstacles that moved are actors on the recorded paths, other obstacles and the map are static models; those that never
-came into the world are left out. Robots are models at their start with their lidars and the noise of these, and listen
-for velocities on ``/model/<name>/cmd_vel``. Shapes are boxes, cylinders and meshes, 1 m high.
+Obstacles that moved are actors on the recorded paths, other obstacles and the map are static models; obstacles that
+never came into the world are left out. Robots are models at their start with their lidars and the noise of these, and
+listen for velocities on ``/model/<name>/cmd_vel``. Shapes are boxes, cylinders and meshes, 1 m high.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ def load(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
 
     Args:
         path: The file.
-        request: What the parent asked for.
+        request: The request of the parent process.
 
     Returns:
         (K, 3) number of the line, x and y; and ``parts``, for each line its group, whether it is closed, and its width.
@@ -70,7 +70,7 @@ def _add(rows: list[Any], parts: list[Any], line: Any, part: tuple[str, bool, fl
     number = float(len(parts))
     rows += [(number, point.x, point.y) for point in line.flattening(_FLAT / unit)]
     if len(rows) > _MOST:
-        raise Refused(f"its lines have more than {_MOST:,} points", "leave out layers that are no walls")
+        raise Refused(f"its lines have more than {_MOST:,} points", "leave out layers that are not walls")
     parts.append(part)
 
 

@@ -28,7 +28,7 @@ def open_scene(path: Path, limits: ImportLimits) -> SceneReader:
     """Check a ``.glb`` or ``.gltf`` file, and read its buffers.
 
     Returns:
-        What reads its triangles.
+        The reader of its triangles.
 
     Raises:
         BridgeError: Something in it does not fit, or refers to other places.

@@ -33,7 +33,7 @@ class SceneReader:
 
     Args:
         content: The description.
-        buffers: Content of each buffer; empty for those that only stand for what is packed.
+        buffers: Content of each buffer; empty for a buffer that only stands for packed data.
         most: Largest number of triangles.
     """
 

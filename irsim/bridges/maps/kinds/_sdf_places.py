@@ -120,20 +120,20 @@ def find_file(uri: str, beside: Path, root: str | None, limits: ImportLimits) ->
         uri: Such as ``model://table/meshes/table.stl``, ``meshes/table.stl`` or ``file://...``.
         beside: The file that names it.
         root: A folder with models; None for none.
-        limits: Those of the import; with a root, variables count for nothing.
+        limits: Limits of the import; if they have a root, Gazebo's variables are ignored.
     """
-    scheme, found, rest = uri.strip().partition("://")
-    name = rest if found else scheme
+    scheme, matches, rest = uri.strip().partition("://")
+    name = rest if matches else scheme
     folders = [Path(root)] if root else []
     if limits.root is None:
         folders += [Path(one) for key in _VARIABLES for one in os.environ.get(key, "").split(os.pathsep) if one]
     folders += [folder / "models" for folder in list(folders)]
     here = beside.resolve().parent
     parts = [part for part in PurePosixPath(name.replace("\\", "/")).parts if part != "/"]
-    if scheme.lower() in ("http", "https") and found:
+    if scheme.lower() in ("http", "https") and matches:
         parts = parts[-1:]
-    tried = [] if found and scheme != "file" else [(here, here / name)]
-    tried += [(here, here.joinpath(*parts[1:]))] if found and parts[:1] == [here.name] else []
+    tried = [] if matches and scheme != "file" else [(here, here / name)]
+    tried += [(here, here.joinpath(*parts[1:]))] if matches and parts[:1] == [here.name] else []
     tried += [(folder, folder.joinpath(*parts)) for folder in folders]
     for folder, candidate in tried:
         inside = folder.resolve()
@@ -145,7 +145,7 @@ def find_file(uri: str, beside: Path, root: str | None, limits: ImportLimits) ->
 
 
 def model_of(path: Path, limits: ImportLimits) -> tuple[Path, ET.Element] | None:
-    """The file of a model, and its element; None if a folder has none.
+    """The file of a model, and its element; None if a folder has no model.
 
     Args:
         path: The file, or the folder with ``model.config`` or ``model.sdf``.

@@ -40,7 +40,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
         things = [replace(t, region=shapely.affinity.scale(t.region, unit, unit, origin=(0, 0))) for t in things]
     elif not are_degrees([thing.region for thing in things]):
         fix = "write it in WGS 84, or give --meters-per-unit 1 if its coordinates are meters"
-        raise unusable(path, "its coordinates are no longitudes and latitudes", fix)
+        raise unusable(path, "its coordinates are not longitudes and latitudes", fix)
     else:
         things, said = in_meters(path, things)
         notes += said
@@ -55,12 +55,12 @@ def _features(path: Path, data: Any) -> list[dict[str, Any]]:
     if kind not in ("FeatureCollection", "Feature"):
         features = [{"geometry": data, "properties": None}]
     if not isinstance(features, list) or not all(isinstance(item, dict) for item in features):
-        raise unusable(path, "its features are no list of objects")
+        raise unusable(path, "its features are not a list of objects")
     return features
 
 
 def _chosen(path: Path, features: list[dict[str, Any]]) -> tuple[list[Outlined], list[str]]:
-    """What stands in the way, in the units of the file, and what was left out."""
+    """Obstacles, in the units of the file, and notes about features that were left out."""
     marked = [item for item in features if _is_marked(item)]
     notes = []
     if marked and len(marked) < len(features):

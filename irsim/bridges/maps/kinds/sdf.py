@@ -39,12 +39,12 @@ _HARMLESS = ("sun", "ground_plane")
 
 @dataclass
 class _World:
-    """What is collected of a world.
+    """The parts of a world that an import collects.
 
     Attributes:
         path: The file.
-        options, limits: Those of the import.
-        things: What stands in the way.
+        options, limits: Options and limits of the import.
+        things: Outlines of the obstacles.
         parts: Files that were read.
         left: Reason -> names of what was left out for it.
         models: Number of models.
@@ -107,14 +107,16 @@ def _include(world: _World, scope: ET.Element, path: Path, open_files: tuple[Pat
         if world.models > _MAX_MODELS:
             raise unusable(world.path, f"it includes more than {_MAX_MODELS:,} models")
         uri = (item.findtext("uri") or "").strip()
-        found = find_file(uri, path, world.options.root, world.limits)
-        loaded = None if found is None else model_of(found, world.limits)
+        located = find_file(uri, path, world.options.root, world.limits)
+        loaded = None if located is None else model_of(located, world.limits)
         if loaded is None:
             if uri.partition("://")[0].lower() in ("http", "https"):
                 what = f"it includes the address '{clean(uri, 120)}', and nothing is fetched"
                 raise unusable(path, what, "download the model, and name the folder that holds it with --root")
             if uri.rpartition("/")[2] not in _HARMLESS:
-                advice = "it is not here, --root names the folder that holds it" if found is None else "it has no model"
+                advice = (
+                    "it is not here, --root names the folder that holds it" if located is None else "it has no model"
+                )
                 world.leave(advice, uri or "an include without a uri")
             continue
         file, model = loaded
@@ -256,26 +258,26 @@ def _polyline(
 def _mesh(world: _World, file: Path, geometry: ET.Element, place: Floats, band: tuple[float, float], name: str) -> Any:
     """The outline of a mesh in a file, which is named if it cannot be read."""
     uri = (geometry.findtext("uri") or "").strip()
-    found = find_file(uri, file, world.options.root, world.limits)
-    if found is None or not found.is_file():
+    located = find_file(uri, file, world.options.root, world.limits)
+    if located is None or not located.is_file():
         world.leave("the mesh is not here, --root names the folder that holds it", uri)
         return None
-    if found.suffix.lower() not in mesh.KIND.suffixes:
+    if located.suffix.lower() not in mesh.KIND.suffixes:
         world.leave(f"meshes are read from {', '.join(mesh.KIND.suffixes)}", uri)
         return None
     try:
-        if found.suffix.lower() == ".obj":
-            triangles = read_obj(found, world.limits)
+        if located.suffix.lower() == ".obj":
+            triangles = read_obj(located, world.limits)
         else:
             require(mesh.KIND.extra, *mesh.KIND.libraries)
-            triangles = mesh.read(found, ImportOptions(up="z"), world.limits).solid
+            triangles = mesh.read(located, ImportOptions(up="z"), world.limits).solid
     except ExtraError:
         world.leave("meshes need the extra: pip install 'irsim-mcp[mesh]'", uri)
         return None
     except BridgeError as error:
         world.leave(str(error), uri)
         return None
-    world.parts.append(found)
+    world.parts.append(located)
     scale = np.array(find_numbers(file, geometry.find("scale"), 3, (1, 1, 1)))
     points = np.asarray(triangles, dtype=np.float64).reshape(-1, 3) * scale
     return slices.slice_of_mesh(_moved(place, points).reshape(-1, 3, 3), *band)

@@ -69,7 +69,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
 
 
 def unpacked_splats(path: Path, limits: ImportLimits) -> Splats:
-    """The splats of a file; those of packed ones are unpacked in a process of its own.
+    """The splats of a file; a process of its own unpacks packed ones.
 
     Raises:
         BridgeError: The file is damaged, or no library reads it.

@@ -78,8 +78,8 @@ def map_of_scans(
         BridgeError: The map would have too many cells.
     """
     if range_max is None:
-        found = np.concatenate([scan.ranges[_is_hit(scan)] for scan in scans])
-        range_max = float(np.quantile(found, _NEAR_SHARE)) if len(found) else 0.0
+        matches = np.concatenate([scan.ranges[_is_hit(scan)] for scan in scans])
+        range_max = float(np.quantile(matches, _NEAR_SHARE)) if len(matches) else 0.0
         reach = math.inf
     else:
         reach = range_max
@@ -236,8 +236,8 @@ def import_bag(
     options, path, out = options or BagOptions(), Path(path), Path(out)
     for name in ("resolution", "radius", "step_time", "range_max"):
         value = getattr(options, name)
-        if value is not None and not (math.isfinite(value) and value > 0):
-            raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} above 0")
+        if value is not None and not 1e-6 <= value <= 1e9:
+            raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} from 1e-6 to 1e9")
     result = read_bag(path, options.odom, options.scan)
     rows = _rows(result, options)
     times, poses = result.times[rows] - result.times[rows[0]], result.poses[rows]

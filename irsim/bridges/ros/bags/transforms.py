@@ -31,7 +31,7 @@ class Transforms:
         self._count = 0
 
     def add(self, message: Any, *, fixed: bool) -> None:
-        """Add the transforms of a message; those that are not finite are left out.
+        """Add the transforms of a message; transforms that are not finite are left out.
 
         Raises:
             BridgeError: There are too many.
