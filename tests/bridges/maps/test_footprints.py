@@ -75,7 +75,7 @@ def test_a_unit_makes_it_a_plan() -> None:
     ("text", "message"),
     [
         ('{"type": "FeatureCollection", "features": [', "not valid JSON"),
-        ('{"type": "FeatureCollection", "features": 3}', "no list"),
+        ('{"type": "FeatureCollection", "features": 3}', "not a list"),
         ('{"type": "FeatureCollection", "features": []}', "nothing stands"),
         ('{"type": "Polygon", "coordinates": [[[0, 0], [1, 1]]]}', "geometry of feature 0"),
         ('{"type": "Polygon", "coordinates": "here"}', "geometry of feature 0"),
