@@ -15,6 +15,8 @@ CALLED_BY_OTHERS = {
     "expat": "doctype namespaced",
     "Matplotlib": "get_transforms get_window_title",
     "the MCP SDK": "methods pre_parse_json run_stdio_async",
+    "pickle": "persistent_id persistent_load",
+    "shutil and os.walk": "inode is_junction",
     "typer": "on_broken_pipe",
     "learners, by message": "_advance _renew _set_level",
     "drives of users": "coast",
