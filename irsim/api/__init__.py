@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from irsim.api.render_scenario import render
     from irsim.api.run_scenario import run
     from irsim.api.take_snapshot import snapshot
-    from irsim.episodes.episode import default_time_limit
     from irsim.scenario.open import import_modules
+    from irsim.simulation.time_limit import default_time_limit
     from irsim.validation.validate import diff, fix, validate
 
 __all__ = [
@@ -30,7 +30,7 @@ __all__ = [
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "default_time_limit": "irsim.episodes.episode",
+        "default_time_limit": "irsim.simulation.time_limit",
         "diff": "irsim.validation.validate",
         "fix": "irsim.validation.validate",
         "import_modules": "irsim.scenario.open",

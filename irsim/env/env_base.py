@@ -14,7 +14,6 @@ from irsim.env.parameters import PathParam
 from irsim.env.state import EnvState
 from irsim.graphics.scene.style import Palette
 from irsim.scenario.resolve.resolved import ResolvedScenario
-from irsim.simulation.active_env import use
 
 if TYPE_CHECKING:
     from irsim.env.old.factory import EnvConfig, ObjectFactory
@@ -65,7 +64,6 @@ class Env(EnvState):
         self.path_param = PathParam()
         self.logger = Logger(log_level, log_file)
         self.palette_param = Palette()
-        use(self)
         self._strict, self._wanted_mode, self._wanted_seed = strict, step_mode, seed
         self.world_name = world_name
         self._policy = policies.opened(policy)

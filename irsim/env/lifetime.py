@@ -38,16 +38,17 @@ def open_world(env: EnvState, world_name: str | Path | ResolvedScenario | None) 
     chosen = env._wanted_seed if env._wanted_seed is not None else scenario.world.seed
     chosen = next_seed() if chosen is None else chosen
     plain, scenario = scenario, driven(scenario, env._policy)
+    use(env)
     seed = fresh_seed() if chosen is None else check_seed(chosen)
     simulation = Simulation(scenario, [seed], history=True)
     simulation.report = env.logger.error_once
     simulation.owner = ref(env)
     simulation.make_view = make_view
     attach_python(simulation)
+    env._originals = simulation.views()
     attach(simulation, env._policy)
     env.scenario, env._seed, env._simulation = scenario, seed, simulation
     remember_written(env, plain, scenario)
-    env._originals = simulation.views()
     env._objects = list(env._originals)
     env._exchanged = False
     env._world = env._world_class(simulation)

@@ -2,33 +2,27 @@
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from irsim.common.arguments import check_whole_number
 from irsim.diagnostics.errors import OverLimitError
 from irsim.env import Env
-from irsim.options.units import MAX_SECONDS
 from irsim.results.run import HorizonSource
 from irsim.scenario.limits import Limits
 from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
 from irsim.simulation.build import steps_until
+from irsim.simulation.time_limit import default_time_limit
 
 if TYPE_CHECKING:
     from irsim.simulation.protocols import EpisodeRecorder
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["HORIZON_FACTOR", "MIN_HORIZON", "Progress", "advance", "default_time_limit", "horizon_of", "seed_of"]
+__all__ = ["Progress", "advance", "horizon_of", "seed_of"]
 
 Progress = Callable[[int, int], None]
 """Callback ``(steps_done, steps_total)``, called every few steps."""
 
-MIN_HORIZON = 30.0
-"""Shortest default time limit of an episode [s]."""
-HORIZON_FACTOR = 4.0
-"""The default time limit is this many times the time of the longest straight route at top speed."""
 _CHUNK_STEPS = 50
 """Number of steps between two calls of the progress callback."""
 
@@ -37,25 +31,6 @@ def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
     """The given seed, else the seed of the scenario, else 0 if nothing is random; None if a seed must be drawn."""
     chosen = scenario.world.seed if seed is None else seed
     return 0 if chosen is None and not random_parts(scenario) else chosen
-
-
-def default_time_limit(simulation: Simulation) -> float:
-    """Time limit [s] of a scenario that gives none: 4 times the longest straight route at top speed, at least 30 s.
-
-    The latest start of a robot is added: its ``start_time`` or ``appear_time``, and the longest delay if starts are
-    perturbed.
-    """
-    longest, starts, state = 0.0, [0.0], simulation.state
-    for view in simulation.views():
-        record, goals = view.record, state.goals(view.row)
-        if record.role != "robot":
-            continue
-        start: Sequence[float] = state.initial_state(view.row)[:2].tolist()
-        way = sum(math.dist(a, b) for a, b in itertools.pairwise([start, *(goal[:2] for goal in goals)]))
-        if (speed := view.max_speed) > 0:
-            longest = max(longest, way / speed)
-        starts.append(record.moves_from + (record.spreads.delay if record.spreads else 0.0))
-    return min(max(MIN_HORIZON, HORIZON_FACTOR * longest) + max(starts), MAX_SECONDS)
 
 
 def horizon_of(simulation: Simulation, steps: int | None, limits: Limits) -> tuple[int, HorizonSource]:

@@ -37,7 +37,7 @@ from irsim.runs.store import (
     tidy,
 )
 from irsim.simulation.events import Event, read_events
-from irsim.simulation.trace import sensors
+from irsim.simulation.trace import recorded_rows, sensors
 
 if TYPE_CHECKING:
     from irsim.results.run import RunResult
@@ -109,7 +109,8 @@ class Recorder:
         self._most_bytes = _MAX_TRACE_BYTES if limited else sys.maxsize
         self._piece_rows = max(1, _MAX_PIECE_NUMBERS // max(1, 3 * simulation.objects))
         self._revision = simulation.revision
-        self._log, self._movers = _log_of(simulation, scans)
+        kept, self._movers = sensors(simulation) if scans else [], recorded_rows(simulation)
+        self._log = _log_of(simulation, self._movers, scans)
         self._spare: core.Log | None = None  # holds the piece that is being written, or nothing
         self._writer = PieceWriter()
         self._log.attach(simulation.state)
@@ -118,7 +119,7 @@ class Recorder:
         self._pieces = self._events = self._bytes = self._scan_bytes = self._pruned_at = 0
         self._done = False
         self._due = time.monotonic() + _WRITE_PERIOD_S
-        kept, source = sensors(simulation) if scans else [], simulation.scenario.source
+        source = simulation.scenario.source
         self._meta: dict[str, Any] = {
             "id": self.run_id,
             "cancelled": False,
@@ -233,7 +234,7 @@ class Recorder:
             return
         self._detach()
         self._spare = None
-        self._attach(_log_of(self._simulation, scans=False)[0])
+        self._attach(_log_of(self._simulation, self._movers, scans=False))
         self._write_meta(scans_until=last)
 
     def _attach(self, log: core.Log) -> None:
@@ -282,7 +283,7 @@ class Recorder:
 
     def _exchange_logs(self) -> None:
         """Continue with the spare log, so that the present one can be written; its memory is used again later."""
-        spare = self._spare or _log_of(self._simulation, self._scans)[0]
+        spare = self._spare or _log_of(self._simulation, self._movers, self._scans)
         spare.clear()
         self._detach()
         self._spare = self._log
@@ -344,12 +345,10 @@ def recording(
         recorder.close()
 
 
-def _log_of(simulation: Simulation, scans: bool) -> tuple[core.Log, list[int]]:
-    """A log of the objects that can move, and their rows; with Python behaviors or drives any object can."""
-    records, any_can_move = simulation.scenario.objects, simulation.in_python
-    movers = [row for row, record in enumerate(records) if any_can_move or not record.static or record.appear_time]
-    columns = max((records[row].vel_dim for row in movers), default=0)
-    return core.Log(simulation.world, movers, min(3, columns), scans), movers
+def _log_of(simulation: Simulation, movers: list[int], scans: bool) -> core.Log:
+    """A log of the objects in some rows."""
+    columns = max((simulation.scenario.objects[row].vel_dim for row in movers), default=0)
+    return core.Log(simulation.world, movers, min(3, columns), scans)
 
 
 def _stem(scenario: str) -> str:

@@ -29,6 +29,7 @@ __all__ = [
     "record",
     "record_rollout",
     "record_worlds",
+    "recorded_rows",
     "sensors",
 ]
 
@@ -232,6 +233,12 @@ def _trace(simulation: Simulation, begin: int, columns: Sequence[NDArray[Any]], 
         names=names,
         step_time=step_time,
     )
+
+
+def recorded_rows(simulation: Simulation) -> list[int]:
+    """Rows of the objects whose states a recorded run keeps: those that can move, which any can in Python."""
+    records, any_can_move = simulation.scenario.objects, simulation.in_python
+    return [row for row, record in enumerate(records) if any_can_move or not record.static or record.appear_time]
 
 
 def sensors(simulation: Simulation) -> list[tuple[str, slice]]:

@@ -10,11 +10,11 @@ import numpy as np
 
 from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
-from irsim.episodes.episode import HORIZON_FACTOR, MIN_HORIZON
 from irsim.episodes.obstructions import REACTIVE
 from irsim.scenario.checks import Context
 from irsim.scenario.resolve.body_size import reach_of
 from irsim.scenario.resolve.braking import follow_text
+from irsim.simulation.time_limit import HORIZON_FACTOR, MIN_HORIZON
 from irsim.validation.feasibility.clearance_grid import ClearanceGrid
 from irsim.validation.feasibility.dead_ends import Trap, first_pocket, trap_of
 from irsim.validation.feasibility.movers import Mover

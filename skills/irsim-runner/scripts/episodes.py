@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import irsim
-from irsim.episodes.episode import default_time_limit
+from irsim.simulation.time_limit import default_time_limit
 
 MAX_LISTED = 100
 """Episodes that are listed, and collisions that are listed of each."""
