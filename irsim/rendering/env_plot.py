@@ -222,8 +222,9 @@ class EnvPlot(PlotSteps):
             left = [track for track in tracks if track.object not in self._hidden]
             figure.show(self._completed(scene), self._title(), left)
             if self.env.simulation.measurements:
-                objects = views(self.env.simulation)
-                shown = [view for view in objects if self._builder.style(view, {}).show_sensor]
+                simulation = self.env.simulation
+                present = [view for view in views(simulation) if simulation.appeared[view.row] >= 0]
+                shown = [view for view in present if self._builder.style(view, {}).show_sensor]
                 self._user_sensors.show(figure.ax, shown)
         self._shown_at = self._moment()
 

@@ -111,6 +111,8 @@ class OldDrawing(ObjectView):
     def plot(self, ax: Any = None, state: Any = None, vertices: Any = None, **kwargs: Any) -> None:
         """Draw everything that the plot keys show, with ``show_sensor`` also the sensors.
 
+        An object that is not in the world is only drawn if ``state`` says where.
+
         Args:
             ax: Matplotlib axes.
             state: Pose at which to draw.
@@ -118,7 +120,7 @@ class OldDrawing(ObjectView):
             **kwargs: Plot keys in place of the object's own.
         """
         axes = self._on(ax)
-        if axes is None:
+        if axes is None or (state is None and self._simulation.appeared[self.row] < 0):
             return
         if self.record.is_map:
             self.plot_object(axes)

@@ -82,7 +82,8 @@ class SceneBuilder:
         world: Index of the world.
         palette: Default colours.
         has_picture: Function that returns whether a description image exists; otherwise the body is drawn as a shape.
-        ghosts: Draw objects that are not in the world yet, very pale, where they will appear.
+        ghosts: Draw objects that are not in the world yet, very pale and without an arrow, where they will appear;
+            recorded people are left out.
     """
 
     def __init__(
@@ -225,7 +226,7 @@ class SceneBuilder:
             scene.grids.append(self.grid(view))
             return
         style, absent = self.style(view, overrides), self.simulation.appeared[view.row] < 0
-        if absent and not (self.ghosts and self.simulation.state.takes_part[view.row]):
+        if absent and not (self.ghosts and self._will_appear(view)):
             return
         if absent:
             x, y, heading = self.simulation.state.initial_state(view.row)[:3].tolist()
@@ -233,6 +234,8 @@ class SceneBuilder:
         if self.simulation.is_waiting(view.row):
             pale = GHOST_ALPHA if absent else WAITING_ALPHA
             style = replace(style, obj_alpha=pale * style.obj_alpha)
+        if absent:
+            style = replace(style, show_arrow=False, show_fov=False, show_goal=style.show_goal and view.role == "robot")
         heading = self._heading(view, pose) if style.show_arrow else pose[2]
         body = self.body(view)
         key = (style, body, pose, str(goal), heading, view.drawing.text, view.drawing.goal_text, view.description)
@@ -246,6 +249,11 @@ class SceneBuilder:
             scene.pictures.append(drawn.picture)
         if not absent and (style.show_trajectory or style.show_trail):
             self._tracks.add(scene, tracks, view.id, view.row, body, style)
+
+    def _will_appear(self, view: ObjectView) -> bool:
+        """Whether an object that is not in the world yet has a place that a scenario says: recordings are too many."""
+        recorded = view.record.recorded and view.role == "obstacle"
+        return bool(self.simulation.state.takes_part[view.row]) and not recorded
 
     def grid(self, view: ObjectView) -> GridImage:
         """Return the image of a map, which is made once per scene."""

@@ -101,9 +101,9 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
     rows, every = _rows(len(trace), len(moving))
     quantum = 2.0 ** min(max(math.floor(math.log2(max(width, height) / 20_000)), _MIN_EXPONENT), _MAX_EXPONENT)
     columns.add("step", trace.step[rows], 2)
-    _add_poses(columns, _from_the_start(trace.pose)[np.ix_(rows, moving)], quantum)
+    _add_poses(columns, _held(trace.pose)[np.ix_(rows, moving)], quantum)
     for number, item in enumerate(objects):
-        item |= _beginning(trace, number, int(starts[number]))
+        item |= _presence(trace, number, int(starts[number]))
     travellers = np.array([item["role"] == "robot" or "track" in item for item in objects], dtype=bool)
     _add_goals(columns, np.where(travellers[:, None], trace.goal[rows], np.nan), quantum)
     _add_flags(columns, trace, rows)
@@ -135,23 +135,29 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
     return Packed(columns.block(head), head)
 
 
-def _beginning(trace: Trace, number: int, start: int) -> dict[str, int]:
-    """The step ``from`` which an object is in the world, and ``until`` which it stands at its start, if not 0."""
+def _presence(trace: Trace, number: int, start: int) -> dict[str, int]:
+    """The step ``from`` which an object is in the world, and ``until`` which it stands at its start, if not 0.
+
+    ``to`` is the last step at which an object that leaves before the end is in the world.
+    """
     present = np.flatnonzero(~np.isnan(trace.pose[:, number, 0]))
     steps = trace.step[present[:1]].tolist() or [int(trace.step[-1]) + 1]
     bounds = {"from": steps[0], "until": start}
-    return {key: step for key, step in bounds.items() if step > int(trace.step[0])}
+    result = {key: step for key, step in bounds.items() if step > int(trace.step[0])}
+    return result | ({"to": int(trace.step[present[-1]])} if present.size and present[-1] < len(trace) - 1 else {})
 
 
-def _from_the_start(pose: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Poses in which an object that comes later stands at its start before."""
+def _held(pose: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Poses in which an object that comes later stands at its start before, and one that leaves at its end after."""
     absent = np.isnan(pose[:, :, 0])
-    late = np.flatnonzero(absent[0] & ~absent.all(axis=0))
-    if late.size:
+    partly = np.flatnonzero((absent[0] | absent[-1]) & ~absent.all(axis=0))
+    if partly.size:
         pose = pose.copy()
-        for number in late.tolist():
-            first = int(np.argmin(absent[:, number]))
+        for number in partly.tolist():
+            present = np.flatnonzero(~absent[:, number])
+            first, last = int(present[0]), int(present[-1])
             pose[:first, number] = pose[first, number]
+            pose[last + 1 :, number] = pose[last, number]
     return pose
 
 

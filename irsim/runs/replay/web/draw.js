@@ -5,7 +5,7 @@ import { cellImage } from "./cells.js";
 import { opposite, rgbOf, seen } from "./colors.js";
 import { drawContacts } from "./contacts.js";
 import { makeLayer, showLayer, showTrails } from "./layer.js";
-import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, isAbsent, isMover, poseAt, rowOfTime, waits } from "./run.js";
+import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, hasLeft, isAbsent, isMover, poseAt, rowOfTime, waits } from "./run.js";
 import { scanAt } from "./scan.js";
 
 const DENSE = 2.5; // pixels between points of a trail
@@ -32,10 +32,11 @@ export function drawFrame(context, drawing, run, shown, camera, colors, ratio, m
   });
   if (shown.trails) {
     const faint = Math.max(0.14, 0.5 / (1 + run.movers.length / 25));
-    whole = showTrails(drawing.trails, context, camera, ratio, key, row, run.movers.length, faint, most, (target, own, from, to) =>
-      drawTrails(target, run, own, colors, ratio, from, to, 1.6));
+    const left = run.objects.filter((object) => hasLeft(run, object, at)).length; // without a trail from then on
+    whole = showTrails(drawing.trails, context, camera, ratio, `${key} ${left}`, row, run.movers.length, faint, most,
+      (target, own, from, to) => drawTrails(target, run, at, own, colors, ratio, from, to, 1.6));
     context.globalAlpha = 0.75;
-    drawTrails(context, run, camera, colors, ratio, Math.floor(rowOfTime(run, run.time[row] - RECENT)), row, 2);
+    drawTrails(context, run, at, camera, colors, ratio, Math.floor(rowOfTime(run, run.time[row] - RECENT)), row, 2);
     context.globalAlpha = 1;
   }
   if (shown.robot >= 0 && !drawWay(context, drawing, run, shown, camera, colors, ratio, key, most)) whole = false;
@@ -137,16 +138,17 @@ function place(context, camera, ratio, pose) {
   context.rotate(pose.heading);
 }
 
-function drawTrails(context, run, camera, colors, ratio, from, to, width) {
+/** The trails between two rows, of all that have not left the world at the moment `at`. */
+function drawTrails(context, run, at, camera, colors, ratio, from, to, width) {
   inMetres(context, camera, ratio);
   context.lineWidth = width / camera.scale;
   context.lineJoin = "round";
   context.lineCap = "round";
   let points = 0;
   for (const object of run.objects) {
-    if (object.track < 0) continue;
+    if (object.track < 0 || object.first >= to || hasLeft(run, object, at)) continue;
     context.beginPath();
-    points += trace(context, run, object.track, Math.max(0, from), to, DENSE / camera.scale);
+    points += trace(context, run, object.track, Math.max(object.first, from), to, DENSE / camera.scale);
     context.strokeStyle = seen(colors, object.color);
     context.stroke();
   }
@@ -173,12 +175,12 @@ function trace(context, run, track, from, to, dense, most = Infinity) {
 /** The chosen robot's way: behind it in full, ahead of it dotted, as far as eyes can follow. */
 function drawWay(context, drawing, run, shown, camera, colors, ratio, key, most) {
   const object = run.objects[shown.robot], row = Math.floor(shown.at);
-  if (object.track < 0 || !shown.trails) return true;
+  if (object.track < 0 || !shown.trails || isAbsent(run, object, shown.at)) return true;
   const color = seen(colors, object.color), { way } = drawing;
   const whole = showTrails(way, context, camera, ratio, `${key} ${shown.robot}`, row, 1, 1, most, (target, own, from, to) => {
     inMetres(target, own, ratio);
     beginWay(target, color, 2.6 / own.scale);
-    const points = trace(target, run, object.track, from, to, 1 / own.scale);
+    const points = object.first < to ? trace(target, run, object.track, Math.max(object.first, from), to, 1 / own.scale) : 0;
     target.stroke();
     return points;
   });

@@ -33,6 +33,7 @@ export function makeRun({ head, columns }) {
   head.objects.forEach((object, index) => {
     object.index = index;
     object.track ??= -1;
+    object.first = rowOfStep(run, object.from ?? 0);
     if (object.role === "robot") run.robots.push(index);
   });
   const moving = run.objects.filter(isMover);
@@ -120,11 +121,16 @@ export function poseAt(run, object, at, out = {}) {
 /** Whether an object is drawn for each moment: what moves, robots, and what waits, which is pale until it may. */
 export const isMover = ({ track, role, until = 0 }) => track >= 0 || role === "robot" || until > 0;
 
-/** Whether an object has not come into the world at a moment. */
-export const isAbsent = (run, { from = 0 }, at) => from > 0 && run.step[Math.min(Math.floor(at), run.rows - 1)] < from;
+const stepAt = (run, at) => run.step[Math.min(Math.floor(at), run.rows - 1)];
+
+/** Whether an object has left the world at a moment. */
+export const hasLeft = (run, { to = Infinity }, at) => stepAt(run, at) > to;
+
+/** Whether an object is not in the world at a moment: not yet, or no more. */
+export const isAbsent = (run, object, at) => stepAt(run, at) < (object.from ?? 0) || hasLeft(run, object, at);
 
 /** Whether an object stands at its start because its time has not come. */
-export const waits = (run, { until = 0 }, at) => until > 0 && run.step[Math.min(Math.floor(at), run.rows - 1)] < until;
+export const waits = (run, { until = 0 }, at) => stepAt(run, at) < until;
 
 /** Speed since the row before [m/s]. */
 export function speedAt(run, object, at) {

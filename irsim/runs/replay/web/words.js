@@ -1,6 +1,6 @@
 // What the page says about objects and events.
 
-import { ARRIVED, COLLIDED, flagsAt, goalAt, isAbsent, poseAt, speedAt, STOPPED, waits } from "./run.js";
+import { ARRIVED, COLLIDED, flagsAt, goalAt, hasLeft, isAbsent, poseAt, speedAt, STOPPED, waits } from "./run.js";
 
 const KINDS = {
   collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way",
@@ -33,6 +33,7 @@ export const ofRobot = (run, { object, partner }) => [object, partner].some((ind
 /** Name and value pairs of an object at a moment. */
 export function valuesOf(run, index, at) {
   const object = run.objects[index], pose = poseAt(run, index, at), goal = goalAt(run, index, at);
+  if (hasLeft(run, object, at)) return [["state", `left at ${seconds(object.to * run.head.step_time)}`]];
   if (isAbsent(run, object, at)) return [["state", `appears at ${seconds(object.from * run.head.step_time)}`]];
   const turn = Math.atan2(Math.sin(pose.heading), Math.cos(pose.heading));
   const pairs = [

@@ -75,3 +75,38 @@ def test_contacts_between_steps_are_marked_where_and_when_they_happen(workspace:
     page.keyboard.press("[")
     settled(page)
     assert rows.nth(0).get_attribute("aria-current") == "true"
+
+
+LEAVING = """\
+world: {width: 12, height: 8, step_time: 0.1}
+robot:
+  - {name: early, kinematics: {name: omni}, shape: {name: circle, radius: 0.5}, state: [1, 7], goal: [11, 7],
+     behavior: {name: dash}}
+obstacle:
+  - {name: gone, kinematics: {name: omni_angular}, shape: {name: circle, radius: 0.5}, color: "#000000",
+     behavior: {name: replay, times: [0, 1], poses: [[2, 4], [4, 4]]}}
+  - {name: coming, kinematics: {name: omni_angular}, shape: {name: circle, radius: 0.5}, color: "#000000",
+     behavior: {name: replay, times: [3, 4], poses: [[8, 4], [10, 4]]}}
+"""
+
+
+def test_who_has_left_is_drawn_nowhere_and_neither_is_a_trail(workspace: Path, watched: Watched) -> None:
+    irsim.run(text=LEAVING, steps=60, record=workspace / "leaving")
+    page = watched.open(Path(irsim.replay(workspace / "leaving").file))
+
+    def dark(x: float, y: float) -> float:
+        settled(page)
+        px, py = pixel_of(page, x, y)
+        return 255 - max(page.evaluate(SHARE, [px - 8, py - 8, 16, 16]))
+
+    paper = dark(6, 2)
+    scrub(page, 10)
+    assert min(dark(4, 4), dark(3, 4)) > paper + 10, "it is there, with a trail"
+    assert dark(8, 4) == pytest.approx(paper, abs=4)
+    scrub(page, 20)
+    for x, y in ((4, 4), (3, 4), (2, 4), (8, 4), (0.3, 0.3)):
+        assert dark(x, y) == pytest.approx(paper, abs=4), (x, y)
+    scrub(page, 45)
+    assert dark(10, 4) == pytest.approx(paper, abs=4)
+    page.select_option("#robot", label="gone")
+    assert value(page, "state") == "left at 1.00 s"
