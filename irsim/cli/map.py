@@ -179,7 +179,7 @@ def import_(
         str | None,
         typer.Option(
             metavar="FOLDER",
-            help="Folder with the models and meshes that a world names, as in model://table.",
+            help="Folder with the models that a world names (model://table), or that a stage refers to (../part.usd).",
             show_default=False,
         ),
     ] = None,

@@ -209,7 +209,7 @@ def test_layers_beside_the_stage_are_read_and_others_are_not() -> None:
         part.Save()
     for reference, said in [
         ("./parts/part.usda", None),
-        ("./parts/none.usda", "no visible meshes"),
+        ("./parts/none.usda", "no visible meshes; one of its layers was not found: 'none.usda'"),
         ("../part.usda", "outside of its folder"),
         (str(Path().absolute() / "part.usda"), "outside of its folder"),
         ("https://127.0.0.1:9/part.usda", "outside of its folder"),

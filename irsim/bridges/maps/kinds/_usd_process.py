@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,11 +12,12 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.maps.apart import Refused, serve
+from irsim.bridges.maps.kinds._usd_layers import Layers, flattening
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
 
 require("usd", "pxr")
-from pxr import Sdf, Usd, UsdGeom
+from pxr import Usd, UsdGeom
 
 __all__ = ["Collector", "main"]
 
@@ -65,7 +65,8 @@ class Collector:
                 prims.PruneChildren()
                 continue
             if prim.HasAuthoredMetadata("clips"):
-                raise Refused(f"{prim.GetPath()} has value clips, which are other files", "flatten the stage")
+                file = Path(prim.GetStage().GetRootLayer().realPath)
+                raise Refused(f"{prim.GetPath()} has value clips, which are other files", flattening(file))
             if prim.IsA(UsdGeom.PointInstancer):
                 prims.PruneChildren()
             yield prim
@@ -231,16 +232,14 @@ def _mesh(mesh: Any, name: str, time: Any, most: int) -> Floats:
     return corners[:, ::-1] if left_handed else corners
 
 
-_MAX_LAYERS = 5_000
-
-
 def main() -> None:
     """Read the request, answer it."""
     serve(_read)
 
 
 def _read(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
-    missing = _check_layers(path)
+    layers = Layers(path, None if request["root"] is None else Path(request["root"]))
+    layers.check()
     stage = Usd.Stage.Open(str(path))
     if stage is None:
         raise Refused("it is damaged: no stage can be opened from it")
@@ -256,42 +255,5 @@ def _read(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
     notes = [f"prims of these types were left out: {left_out}"] if left_out else []
     if request["unit"] is None and not UsdGeom.StageHasAuthoredMetersPerUnit(stage):
         notes.append(f"it does not say its unit, which is then {scale:g} m; --meters-per-unit gives another")
-    if len(missing) == 1:
-        notes.append(f"one of its layers was not found: '{missing[0][:150]}'")
-    elif missing:
-        notes.append(f"{len(missing)} of its layers were not found, such as '{missing[0][:150]}'")
+    notes += layers.notes(stage)
     return triangles, {"meters_per_unit": scale, "frame": "usd_yup" if up == "Y" else "usd", "notes": notes}
-
-
-def _check_layers(path: Path) -> list[str]:
-    """Check that all layers of the stage lie in or below the folder of the file, and return the missing ones."""
-    root = path.resolve().parent
-    waiting, met = [str(path)], set[str]()
-    missing = []
-    while waiting:
-        name = waiting.pop()
-        if name in met:
-            continue
-        met.add(name)
-        if len(met) > _MAX_LAYERS:
-            raise Refused(f"it is made of more than {_MAX_LAYERS:,} layers")
-        layer = Sdf.Layer.FindOrOpen(name)
-        if layer is None:
-            if name == str(path):
-                raise Refused("it is damaged: it cannot be opened")
-            missing.append(os.path.basename(name))
-            continue  # the stage is composed without it
-        for asset in filter(None, layer.GetCompositionAssetDependencies()):  # no name stands for the layer itself
-            target = layer.ComputeAbsolutePath(asset)
-            _check_reference(asset, target, root, path)
-            waiting.append(target)
-    return missing
-
-
-def _check_reference(asset: str, target: str, root: Path, path: Path) -> None:
-    file = target.partition("[")[0]
-    inside = os.path.isabs(file) and "://" not in target and Path(file).resolve().is_relative_to(root)
-    if os.path.isabs(asset) or "://" in asset or not inside:
-        shown = asset[:150]
-        fix = "put all its files into one folder, or flatten the stage: usdcat --flatten"
-        raise Refused(f"it refers to '{shown}', which is outside of its folder and is not read", fix)

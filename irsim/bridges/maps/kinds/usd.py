@@ -1,8 +1,8 @@
 """``usd``: stages of OpenUSD, read in a process of its own.
 
 The library is C++ that trusts its files: a damaged one may end the process, and a stage can pull in any other file. The
-process has limits of memory and time, and :mod:`irsim.bridges.maps.kinds._usd_process` looks at the references of the
-layers before it opens the stage.
+process has limits of memory and time, and :mod:`irsim.bridges.maps.kinds._usd_layers` looks at the references of the
+layers before the stage is opened.
 """
 
 from __future__ import annotations
@@ -26,19 +26,21 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     """Triangles of the meshes and boxes of a stage that are visible, at the earliest time.
 
     Raises:
-        BridgeError: The stage is damaged, refers to places outside of its folder, or has no meshes.
+        BridgeError: The stage is damaged, refers to places outside of its folder and the root, or has no meshes.
     """
     if options.up == "-y":
         raise unusable(path, "y does not point down in stages of USD", "give --up y or z, or leave it out")
     if path.suffix.lower() == ".usdz":
         _check_archive(path)
-    request = {"up": options.up, "unit": options.meters_per_unit}
+    root = None if options.root is None else str(Path(options.root).resolve())
+    request = {"up": options.up, "unit": options.meters_per_unit, "root": root}
     triangles, answer = read_apart(path, f"{__package__}._usd_process", limits, request)
     scale, frame = float(answer["meters_per_unit"]), answer["frame"]
     if not np.isfinite(triangles).all():
         raise unusable(path, "some of its points are not numbers")
     if not len(triangles):
-        raise unusable(path, "it has no visible meshes", "export the stage with its meshes, not only references")
+        why = "; ".join(["it has no visible meshes", *answer["notes"]])
+        raise unusable(path, why, "export the stage with its meshes, not only references")
     return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"])
 
 
@@ -64,5 +66,5 @@ KIND = Kind(
     read=read,
     extra="usd",
     libraries=("pxr",),
-    unused=("opacity", "lanes", "root"),
+    unused=("opacity", "lanes"),
 )
