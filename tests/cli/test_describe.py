@@ -10,6 +10,7 @@ from irsim.bundled import templates
 from irsim.common.event_kinds import EVENTS, EventKind
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup import as_brief_text, as_text, lookup
+from irsim.lookup.full_text import Document, best
 from irsim.metrics import EPISODE_METRICS, METRICS
 from irsim.options.registry import REGISTRIES
 from tests.cli.conftest import Run, parsed
@@ -209,6 +210,15 @@ def test_free_text_finds_the_few_topics_that_fit_best(words: str, among: str) ->
     assert all(len(hit.text) < 200 for hit in hits)
     for hit in hits:
         assert lookup(hit.name).topic == hit.name
+
+
+def test_a_page_with_all_words_comes_before_one_with_a_rare_word() -> None:
+    rare = Document("rare", "wheelbase wheelbase", "")
+    whole = Document("whole", "", "wheelbase of a car red red red")
+    others = [Document(f"page {k}", "", "car of another kind") for k in range(3)]
+    names, unknown = best([rare, *others, whole], "wheelbase car")
+    assert names[:2] == ["whole", "rare"]
+    assert not unknown
 
 
 def test_words_of_a_code_in_any_order_find_it() -> None:

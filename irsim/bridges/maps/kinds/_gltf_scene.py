@@ -167,7 +167,7 @@ def _unpacked(packed: dict[str, Any], data: bytes) -> NDArray[np.uint8]:
     """Bytes that the library meshoptimizer has packed."""
     if find_spec("meshoptimizer") is None:
         fix = "install the library, which needs a compiler: pip install --pre meshoptimizer; or unpack the file: npx "
-        fix += "@gltf-transform/cli dedup scene.glb plain.glb"
+        fix += "@gltf-transform/cli copy scene.glb plain.glb"
         raise Refused("its geometry is packed with EXT_meshopt_compression, and meshoptimizer is not installed", fix)
     library = import_module("meshoptimizer")
     count, stride = int(packed["count"]), int(packed["byteStride"])
