@@ -56,10 +56,12 @@ DEBIAN_PEERS = (
 )  # fmt: skip
 """Packages of Debian 12 that bridges meet in tests."""
 PYTHON_PEERS = (
+    "drawsvg>=2.4",
     "mcap-ros2-support>=0.5",
     "meshoptimizer==0.2.30a0",
     "msgpack>=1",
     "pycolmap>=4",
+    "svgwrite>=1.4",
     "zenoh-ros2-sdk==0.1.8",
 )
 """Packages of Python that bridges meet in tests, and that are no dependencies."""

@@ -105,8 +105,9 @@ def import_(
         str,
         typer.Argument(
             help="A mesh (.glb, .gltf, .obj, .ply, .stl), Gaussian splats (.ply), a navigation mesh of Habitat "
-            "(.navmesh), a USD stage (.usd, .usda, .usdc, .usdz), roads (.xodr), a world of Gazebo (.sdf, .world), or "
-            "the YAML file of a map of the ROS map server.",
+            "(.navmesh), a USD stage (.usd, .usda, .usdc, .usdz), roads (.xodr), a world of Gazebo (.sdf, .world), a "
+            "plan (.dxf, .svg), footprints (.geojson, .osm), .xml of MuJoCo or CommonRoad, or the YAML file of a map "
+            "of the ROS map server.",
             show_default=False,
         ),
     ],
@@ -184,6 +185,14 @@ def import_(
         ),
     ] = None,
     lanes: Annotated[Lanes, typer.Option(help="Lanes of roads that are free.")] = Lanes.drive,
+    layer: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="Layer of a plan in DXF or SVG that counts; can be repeated. Default: all that are seen.",
+            show_default=False,
+        ),
+    ] = None,
     robot: Annotated[
         bool, typer.Option("--robot", help="Add a robot that drives from one end of the map to the other.")
     ] = False,
@@ -211,6 +220,7 @@ def import_(
         "bounds": None if bounds is None else _numbers(bounds, "bounds", 4, "--bounds 0,0,8,6"),
         "lanes": lanes.value,
         "root": root,
+        "layers": tuple(layer) if layer else None,
     }
     if list_levels:
         result = only_list(file, **options)

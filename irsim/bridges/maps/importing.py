@@ -211,10 +211,10 @@ def _check_targets(targets: list[Path], sources: list[Path]) -> None:
 
 def _check_used(kind: Kind, options: ImportOptions) -> None:
     """No option is given that says nothing about files of this kind."""
-    for name in kind.unused:
+    for name in kind.unused if kind.layered else (*kind.unused, "layers"):
         if getattr(options, name) != ImportOptions.model_fields[name].default:
             what = f"the option {name} says nothing about {kind.title}"
-            raise ArgumentError(what, f"leave out --{name.replace('_', '-')}")
+            raise ArgumentError(what, f"leave out --{'layer' if name == 'layers' else name.replace('_', '-')}")
 
 
 def _result(

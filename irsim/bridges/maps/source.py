@@ -77,6 +77,8 @@ class ImportOptions(Options):
     """Left, lower, right and upper bound of the part that becomes the map. Default: all, without far splats."""
     lanes: Literal["drive", "walk", "all"] = "drive"
     """Lanes of roads that are free: those for vehicles, those for pedestrians, or both."""
+    layers: Annotated[tuple[str, ...], Field(min_length=1, max_length=1000)] | None = None
+    """Names of the layers of a floor plan that count, such as those of walls. Default: all that are seen."""
 
 
 @dataclass(frozen=True)
@@ -238,6 +240,7 @@ class Kind:
         unused: Names of options that say nothing about such files.
         roots: Names of the root elements of such files, if they are files of XML.
         by_name: Whether only the names of such files say what they are.
+        layered: Whether such files have layers that one can choose.
     """
 
     name: str
@@ -251,6 +254,7 @@ class Kind:
     unused: tuple[str, ...] = ()
     roots: tuple[str, ...] = ()
     by_name: bool = False
+    layered: bool = False
 
 
 @cache

@@ -43,12 +43,15 @@ def load(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
     notes = [] if document.units else ["the file names no unit: meters were taken, --meters-per-unit gives another one"]
     unit = float(ezdxf.units.conversion_factor(document.units or ezdxf.units.M, ezdxf.units.M))
     hidden = {layer.dxf.name for layer in document.layers if layer.is_off() or layer.is_frozen()}
+    chosen = _chosen(document, request["layers"])
     rows: list[tuple[float, float, float]] = []
     parts: list[tuple[str, bool, float]] = []
     left: Counter[str] = Counter()
     for number, entity in enumerate(recursive_decompose(document.modelspace())):
         kind = entity.dxftype()
-        if entity.dxf.layer in hidden:
+        if chosen is not None and entity.dxf.layer.lower() not in chosen:
+            left["in other layers"] += 1
+        elif entity.dxf.layer in hidden:
             left["hidden"] += 1
         elif kind in ("HATCH", "MPOLYGON"):
             for line in ezdxf.path.from_hatch(entity):
@@ -61,8 +64,21 @@ def load(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
             left[kind] += 1
     if left:
         listed = ", ".join(f"{count} {kind}" for kind, count in left.most_common(5))
-        notes.append(f"left out, since they are neither lines nor areas: {listed}")
+        notes.append(f"left out, since they are neither lines nor areas that are seen: {listed}")
     return np.array(rows, dtype=np.float64).reshape(-1, 3), {"parts": parts, "unit": unit, "notes": notes}
+
+
+def _chosen(document: Any, layers: list[str] | None) -> set[str] | None:
+    """Names of the layers that count, in lower case, as DXF does not tell cases apart; None for all."""
+    if layers is None:
+        return None
+    known = {layer.dxf.name.lower(): layer.dxf.name for layer in document.layers}
+    missing = [name for name in layers if name.lower() not in known]
+    if missing:
+        raise Refused(
+            f"it has no layer '{missing[0][:60]}'", f"its layers are {', '.join(sorted(known.values())[:12])}"
+        )
+    return {name.lower() for name in layers}
 
 
 def _add(rows: list[Any], parts: list[Any], line: Any, part: tuple[str, bool, float], unit: float) -> None:

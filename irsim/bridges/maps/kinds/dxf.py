@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from irsim.bridges.maps.apart import read_apart
+from irsim.bridges.maps.areas import nested
 from irsim.bridges.maps.geographic import WALL
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
 
@@ -21,7 +22,9 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
     Raises:
         BridgeError: The file is damaged.
     """
-    rows, said = read_apart(path, f"{__package__}._dxf_process", limits)
+    rows, said = read_apart(
+        path, f"{__package__}._dxf_process", limits, {"layers": options.layers and list(options.layers)}
+    )
     unit = options.meters_per_unit or float(said["unit"])
     points = np.asarray(rows, dtype=np.float64)
     if not np.isfinite(points).all():
@@ -37,16 +40,8 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
             wall = shapely.LineString(line).buffer(thick / 2, cap_style="flat", join_style="mitre")
             things.append(Outlined("", wall))
     for regions in groups.values():
-        things.append(Outlined("", _nested(regions)))
+        things.append(Outlined("", nested(regions)))
     return Outlines(things, meters_per_unit=unit, notes=list(said["notes"]))
-
-
-def _nested(regions: list[Any]) -> Any:
-    """The area within an odd number of outlines, in pairs, so that many outlines take little time."""
-    while len(regions) > 1:
-        pairs = zip(regions[::2], regions[1::2], strict=False)
-        regions = [one.symmetric_difference(other) for one, other in pairs] + regions[len(regions) // 2 * 2 :]
-    return regions[0]
 
 
 KIND = Kind(
@@ -60,4 +55,5 @@ KIND = Kind(
     libraries=("ezdxf",),
     unused=("headroom", "slope", "climb", "up", "level", "height", "opacity", "lanes", "root"),
     by_name=True,
+    layered=True,
 )
