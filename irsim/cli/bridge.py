@@ -80,7 +80,13 @@ def import_bag(
         str | None,
         typer.Option(metavar="X,Y,YAW", help="Where the lidar is on the robot.", show_default="as /tf_static says"),
     ] = None,
-    resolution: Annotated[float, typer.Option(help="Side of a cell of the map, in metres.")] = 0.05,
+    resolution: Annotated[
+        float | None,
+        typer.Option(
+            help="Side of a cell of the map, in metres. Default: 0.05, more where the map would be too large.",
+            show_default=False,
+        ),
+    ] = None,
     radius: Annotated[float, typer.Option(help="Radius of the robot, in metres.")] = 0.2,
     step_time: Annotated[float, typer.Option(help="Step time of the scenario, in seconds.")] = 0.1,
     start: Annotated[float, typer.Option("--from", help="Start of the window of time, in seconds.")] = 0.0,

@@ -145,7 +145,13 @@ def import_(
             show_default=False,
         ),
     ] = None,
-    resolution: Annotated[float, typer.Option(help="Side of a cell (m).")] = 0.05,
+    resolution: Annotated[
+        float | None,
+        typer.Option(
+            help="Side of a cell (m). Default: 0.05, more where the map would be too large, less where walls are thin.",
+            show_default=False,
+        ),
+    ] = None,
     headroom: Annotated[float, typer.Option(help="Free height above a floor (m).")] = 1.5,
     slope: Annotated[float, typer.Option(help="Steepest floor (deg).")] = 45.0,
     climb: Annotated[float, typer.Option(help="Highest step that is climbed (m).")] = 0.2,

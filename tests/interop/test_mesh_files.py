@@ -48,6 +48,15 @@ def test_a_flat_from_a_file_to_a_run(tmp_path) -> None:
     assert there == pytest.approx(np.array([[1.8, 0.75, -1.45]]), abs=0.01)
 
 
+def test_a_large_mesh_gets_cells_that_fit(tmp_path) -> None:
+    ground = write_obj(tmp_path / "a.obj", y_up(box([0, 0, 0], [150, 150, 0.1])))
+    result = import_map(ground, tmp_path / "a.yaml")
+    assert (result.resolution, result.free_area) == (0.1, pytest.approx(150**2, rel=0.01))
+    assert any("cells are 0.1 m" in note for note in result.notes)
+    with pytest.raises(BridgeError, match=r"--resolution 0\.1\b"):
+        import_map(ground, tmp_path / "b.yaml", resolution=0.05)
+
+
 @pytest.mark.parametrize("suffix", ["glb", "gltf", "obj", "ply", "stl"])
 def test_every_format_gives_the_same_map(tmp_path, suffix) -> None:
     up = "y" if suffix in ("glb", "gltf", "obj") else "z"
@@ -148,14 +157,14 @@ def test_other_hostile_files(tmp_path) -> None:
     nan = triangles.copy()
     nan[0, 0, 0] = np.nan
     soup(nan).export(tmp_path / "nan.stl")
-    soup(box([0, 0, 0], [80_000, 80_000, 1])).export(tmp_path / "land.stl")
+    soup(box([0, 0, 0], [8e7, 8e7, 1])).export(tmp_path / "land.stl")
     (tmp_path / "faces.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
     (tmp_path / "points.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n")
     (tmp_path / "big.obj").write_text("v 0 0 0\nv 1e39 0 0\nv 0 1e39 1e39\nf 1 2 3\n")
     trimesh.PointCloud(np.random.default_rng(0).random((9, 3))).export(tmp_path / "cloud.ply")
     for name, said in [
         ("nan.stl", "not numbers"),
-        ("land.stl", "--resolution"),
+        ("land.stl", "more than 8,000,000 cells of 100 m"),
         ("faces.obj", "vertex|damaged"),
         ("points.obj", "no triangles|damaged"),
         ("big.obj", "--resolution|not numbers"),

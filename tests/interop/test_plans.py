@@ -40,6 +40,15 @@ def test_a_plan_in_millimeters(tmp_path) -> None:
     assert occupied(tmp_path, document) == pytest.approx(area, rel=0.01)
 
 
+def test_a_large_plan_gets_cells_that_fit(tmp_path) -> None:
+    document = ezdxf.new()
+    document.modelspace().add_lwpolyline([(0, 0), (300, 0), (300, 200), (0, 200)], close=True)
+    document.saveas(tmp_path / "a.dxf")
+    result = import_map(tmp_path / "a.dxf", tmp_path / "a.yaml")
+    assert result.resolution == 0.1
+    assert any("cells are 0.1 m" in note for note in result.notes)
+
+
 @pytest.mark.parametrize("share", [0.3, 0.7])
 def test_truncated_plans_are_refused(tmp_path, share) -> None:
     document = ezdxf.new()

@@ -60,6 +60,15 @@ def test_a_flat_in_any_unit_and_axis(up, unit, suffix) -> None:
     assert sidecar.scale == pytest.approx(1 / unit)
 
 
+def test_a_large_stage_gets_cells_that_fit() -> None:
+    stage, _ = new_stage(Path("town.usda"))
+    add_mesh(stage, "/World/ground", box([0, 0, 0], [150, 150, 0.1]))
+    stage.Save()
+    result = import_map("town.usda", "town.yaml")
+    assert result.resolution == 0.1
+    assert any("cells are 0.1 m" in note for note in result.notes)
+
+
 def test_a_stage_that_does_not_say_its_unit() -> None:
     stage, _ = new_stage(Path("flat.usda"))
     add_mesh(stage, "/World/flat", flat())

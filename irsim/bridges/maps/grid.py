@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -14,16 +14,19 @@ from irsim.bridges.base import BridgeError
 from irsim.common.arrays import Floats
 
 __all__ = [
+    "SIDES",
     "Bools",
     "Grid",
     "Ints",
     "Triangles",
     "clipped",
-    "fitting_resolution",
+    "fits_into",
+    "fitting_side",
     "grid_over",
     "least",
     "most",
     "rows_of",
+    "side_notes",
     "slices",
     "spread",
 ]
@@ -34,6 +37,8 @@ Bools: TypeAlias = NDArray[np.bool_]
 """Array of truth values."""
 Triangles: TypeAlias = NDArray[Any]
 """(T, 3, 3) corners x, y, z [m] of triangles, floats of single or double precision; z up."""
+SIDES = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+"""Sides that cells get by themselves [m]: the first one with which a map is small enough."""
 _MAX_COLUMNS = 1 << 26
 """Columns that a key of a piece has room for."""
 _LEAST_CELLS = 16
@@ -108,30 +113,57 @@ def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int, hint
     Raises:
         BridgeError: There would be too many cells; the message has a resolution that fits.
     """
-    fits = fitting_resolution(low, high, resolution, max_cells)
-    if fits > resolution:
+    if not fits_into(low, high, resolution, max_cells):
         size, limit = np.asarray(high, dtype=np.float64) - low, _limit(max_cells)
         what = (
             f"the scene is {size[0]:,.0f} m x {size[1]:,.0f} m, which is more than {limit:,} cells of {resolution:g} m"
         )
-        raise BridgeError("bridge-file", what, f"give a coarser resolution: --resolution {fits:.3g}{hint}")
+        side = fitting_side(None, low, high, max_cells)
+        coarser = (
+            f"a coarser resolution: --resolution {side:g}"
+            if fits_into(low, high, side, max_cells)
+            else "a smaller scene"
+        )
+        raise BridgeError("bridge-file", what, f"give {coarser}{hint}")
     first = np.floor(low / resolution) - 1
     last = np.floor(high / resolution) + 2
     count = (last - first).astype(np.int64)
     return Grid(float(first[0] * resolution), float(first[1] * resolution), resolution, int(count[0]), int(count[1]))
 
 
-def fitting_resolution(low: Floats, high: Floats, resolution: float, max_cells: int) -> float:
-    """The side of a cell with which a grid over a rectangle is small enough: the given one, or a larger one [m]."""
-    size, limit = np.asarray(high, dtype=np.float64) - low, _limit(max_cells)
-    if (size[0] / resolution + 3) * (size[1] / resolution + 3) <= limit:
-        return resolution
-    area = max(float(size[0]), resolution) * max(float(size[1]), resolution)
-    fits = max(math.sqrt(area / limit), float(size.max()) / limit) * 1.01 + 1e-3
-    while (size[0] / fits + 3) * (size[1] / fits + 3) > limit:
-        fits *= 1.1
-    digits = 10 ** (math.floor(math.log10(fits)) - 1)
-    return float(math.ceil(fits / digits) * digits)
+def fitting_side(
+    given: float | None,
+    low: Floats,
+    high: Floats,
+    max_cells: int,
+    fits: Callable[[float], bool] = lambda side: True,
+) -> float:
+    """The side of the cells of a map over a rectangle [m].
+
+    Args:
+        given: The side that the user asks for; None for the smallest of :data:`SIDES` that fits, or its largest.
+        low: (2,) lower left corner [m].
+        high: (2,) upper right corner [m].
+        max_cells: Largest number of cells.
+        fits: Whether cells of a side satisfy a further bound.
+    """
+    if given is not None:
+        return given
+    return next((side for side in SIDES if fits_into(low, high, side, max_cells) and fits(side)), SIDES[-1])
+
+
+def side_notes(given: float | None, side: float) -> list[str]:
+    """What to say about the side of the cells [m]: nothing if the user has asked for it, or if it is the usual one."""
+    if given is not None or side == SIDES[0]:
+        return []
+    why = "so that walls and areas are kept" if side < SIDES[0] else "so that the map is not too large"
+    return [f"cells are {side:g} m, {why}; --resolution sets another size"]
+
+
+def fits_into(low: Floats, high: Floats, side: float, max_cells: int) -> bool:
+    """Whether a grid over a rectangle has few enough cells."""
+    size = np.asarray(high, dtype=np.float64) - low
+    return bool((size[0] / side + 3) * (size[1] / side + 3) <= _limit(max_cells))
 
 
 def _limit(max_cells: int) -> int:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.grid import Bools, Grid, Ints, clipped, grid_over
+from irsim.bridges.maps.grid import SIDES, Bools, Grid, Ints, clipped, fitting_side, grid_over, side_notes
 from irsim.bridges.maps.regions import Level, find_levels
 from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Occupancy, Scene
-from irsim.bridges.maps.voxels import Spans, Surfaces, floors_of, spans_of, walkable_of
+from irsim.bridges.maps.voxels import Spans, Surfaces, few_pieces, floors_of, spans_of, walkable_of
 from irsim.common.arrays import Floats
 
 __all__ = ["cropped", "eroded", "occupancy_of", "within"]
@@ -36,9 +37,10 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
     parts = [part.reshape(-1, 3) for part in (scene.solid, scene.floors, scene.barred) if len(part)]
     if not parts:
         raise _empty("it has no triangles", "export the scene with its meshes")
-    low, high = (np.array([op(part[:, :2], axis=0) for part in parts]) for op in (np.min, np.max))
+    low, high = (op([op(part[:, :2], axis=0) for part in parts], axis=0) for op in (np.min, np.max))
+    side = fitting_side(options.resolution, low, high, limits.cells, partial(few_pieces, scene.solid))
     hint = f", a part of it with --bounds{_UNITS if len(scene.solid) else ''}"
-    grid = grid_over(low.min(axis=0), high.max(axis=0), options.resolution, limits.cells, hint)
+    grid = grid_over(low, high, side, limits.cells, hint)
     spans = None
     if len(scene.solid):
         spans = spans_of(scene.solid, grid, math.radians(options.slope), climb)
@@ -48,6 +50,10 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
     levels = find_levels(surfaces, grid, climb, headroom) if len(surfaces.column) else []
     if not levels:
         what = f"it has no connected floor of 0.5 m² with {headroom:g} m of free height"
+        if options.resolution is None and side != SIDES[0]:
+            size = high - low
+            what += f" in cells of {side:g} m, the smallest that fit over its {size[0]:,.0f} m x {size[1]:,.0f} m"
+            raise _empty(what, f"give {hint.removeprefix(', ')}")
         fix = "check which axis points up (--up y or z), and the unit (--meters-per-unit); or try less --headroom"
         raise _empty(what, fix)
     number = _chosen(levels, _at_seed(levels, surfaces, grid, options), options)
@@ -60,14 +66,18 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
         flat[barred[flat[barred] == UNKNOWN]] = OCCUPIED
     listed = [(one.height, one.areas[0], one.roof) for one in levels]
     result = Occupancy(values, grid, scene.frame, level.height, scene.meters_per_unit, number, listed, level.areas)
-    result.kept, result.radius, result.notes = region, scene.radius, list(scene.notes)
+    result.kept, result.radius, result.notes = (
+        region,
+        scene.radius,
+        [*scene.notes, *side_notes(options.resolution, side)],
+    )
     result.headroom, result.climb = scene.headroom, scene.climb
     if spans is not None and len(levels) > 1 and options.level is None and options.height is None:
         result.notes.append(f"level {number} of {len(levels)} was taken; --list-levels lists them, --level picks one")
-    if spans is not None and _may_be_roof(level, surfaces, spans, options, headroom):
+    if spans is not None and side > COARSE and _may_be_roof(level, surfaces, spans, options, headroom):
         result.notes.append(
             f"this level at {level.height:.2f} m is under the sky, and the scene goes on below it: cells of "
-            f"{options.resolution:g} m are too large for rooms, whose walls fill them, so this may be a roof; try "
+            f"{side:g} m are too large for rooms, whose walls fill them, so this may be a roof; try "
             f"--resolution {FINE:g}"
         )
     return cropped(result)
@@ -85,7 +95,7 @@ def _may_be_roof(
     level: Level, surfaces: Surfaces, spans: Spans, options: ImportOptions, headroom: float
 ) -> bool:  # fmt: skip
     """Whether cells are so large that floors below a level under the sky may have disappeared."""
-    if options.resolution <= COARSE or options.level is not None or options.height is not None:
+    if options.level is not None or options.height is not None:
         return False
     own = level.regions == 0
     if np.isfinite(surfaces.ceiling[own]).mean() >= 0.5:

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.grid import Bools, Grid, fitting_resolution, grid_over, rows_of
+from irsim.bridges.maps.grid import SIDES, Bools, Grid, fits_into, fitting_side, grid_over, rows_of, side_notes
 from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Occupancy, Outlines
 
@@ -22,7 +22,6 @@ _SHARE = 0.005
 """Share of the occupied area by which cells may differ from it, and that walls thinner than a cell may have."""
 _LONG = 8
 """Cells around a thin part that is a wall, and no tip of a corner."""
-_DEFAULT = ImportOptions.model_fields["resolution"].default
 
 
 def outlines_within(outlines: Outlines, bounds: tuple[float, float, float, float] | None) -> list[Any]:
@@ -54,21 +53,10 @@ def occupancy_of_outlines(outlines: Outlines, options: ImportOptions, limits: Im
     regions = outlines_within(outlines, options.bounds)
     solid = shapely.union_all(regions)
     low, high = _extent(outlines, solid, options)
-    side, notes = options.resolution, list(outlines.notes)
-    chosen = side == _DEFAULT
-    if chosen:
-        side = max(side, fitting_resolution(low, high, side, limits.cells))
-        while (
-            side / 2 >= _FINEST
-            and not _fits(solid, side)
-            and fitting_resolution(low, high, side / 2, limits.cells) <= side / 2
-        ):
-            side /= 2
-        if side != options.resolution:
-            why = (
-                "so that walls and areas are kept" if side < options.resolution else "so that the map is not too large"
-            )
-            notes.append(f"cells are {side:g} m, {why}; --resolution sets another size")
+    side = fitting_side(options.resolution, low, high, limits.cells)
+    if options.resolution is None and side == SIDES[0]:
+        side = _fine_side(solid, low, high, limits)
+    notes = [*outlines.notes, *side_notes(options.resolution, side)]
     grid = grid_over(low, high, side, limits.cells, ", a part of it with --bounds")
     thin = _thin_walls(solid, side)
     values = np.full((grid.nx, grid.ny), FREE)
@@ -103,6 +91,14 @@ def _thin_walls(solid: Any, side: float) -> list[Any]:
     wide = _opened(solid, side)
     parts = [part for part in shapely.get_parts(solid.difference(wide)) if part.length > _LONG * side]
     return [part for part in parts if part.boundary.intersection(wide.buffer(1e-6)).length < 0.3 * part.length]
+
+
+def _fine_side(solid: Any, low: Any, high: Any, limits: ImportLimits) -> float:
+    """The usual side of cells, halved until cells have the area of the outlines, or there would be too many [m]."""
+    side = SIDES[0]
+    while side / 2 >= _FINEST and not _fits(solid, side) and fits_into(low, high, side / 2, limits.cells):
+        side /= 2
+    return side
 
 
 def _fits(solid: Any, side: float) -> bool:

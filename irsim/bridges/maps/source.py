@@ -43,8 +43,8 @@ __all__ = [
 class ImportOptions(Options):
     """How a map is made from a scene."""
 
-    resolution: Annotated[Meters, Field(gt=0, le=100)] = 0.05
-    """Side of a cell."""
+    resolution: Annotated[Meters, Field(gt=0, le=100)] | None = None
+    """Side of a cell. Default: 0.05 m, more where the map would be too large, less where walls are thin."""
     headroom: Annotated[Meters, Field(gt=0, le=100)] = 1.5
     """Free height above a floor that the robot needs; what hangs lower is an obstacle."""
     slope: Annotated[Degrees, Field(ge=0, lt=90)] = 45.0

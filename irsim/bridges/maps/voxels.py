@@ -17,7 +17,7 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import Bools, Grid, Ints, Triangles, least, most, rows_of, slices
 from irsim.common.arrays import Floats
 
-__all__ = ["Spans", "Surfaces", "floors_of", "spans_of", "walkable_of"]
+__all__ = ["Spans", "Surfaces", "few_pieces", "floors_of", "spans_of", "walkable_of"]
 
 _STEP = 0.005
 """Step of heights [m]; larger in scenes that are higher than a thousand meters."""
@@ -64,6 +64,21 @@ class Surfaces:
     def some(self, which: Bools) -> Surfaces:
         """Some of them."""
         return Surfaces(self.column[which], self.floor[which], self.ceiling[which])
+
+
+def few_pieces(triangles: Triangles, side: float) -> bool:
+    """Whether triangles touch cells of a side [m] so rarely that :func:`spans_of` takes them.
+
+    On average a triangle touches as many cells as its area, width and depth add up to, and one more (in cells).
+    """
+    total = 0.0
+    for start in range(0, len(triangles), _AT_ONCE):
+        corners = triangles[start : start + _AT_ONCE, :, :2].astype(np.float64) / side
+        u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        area = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
+        size = most(corners) - least(corners)
+        total += float((area + size[:, 0] + size[:, 1] + 1).sum())
+    return total <= _MAX_PIECES
 
 
 def spans_of(triangles: Triangles, grid: Grid, slope: float, climb: float) -> Spans:

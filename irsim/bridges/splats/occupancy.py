@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.grid import fitting_side
 from irsim.bridges.splats.splats import Singles, Splats, covariance_of, scale_of
 from irsim.common.arrays import Floats
 
@@ -181,7 +182,7 @@ class PlanOptions:
     """How a ground plan is made.
 
     Attributes:
-        cell: Side of a cell [m].
+        cell: Side of a cell [m]; None for the smallest usual one with which the plan is small enough.
         low, high: Heights above the floor between which things stand in the way [m].
         opacity: Splats with less opacity are left out.
         occupied: Sum of opacities in a cell from which on the cell is occupied.
@@ -190,7 +191,7 @@ class PlanOptions:
         max_cells: Most cells of the plan.
     """
 
-    cell: float = 0.05
+    cell: float | None = None
     low: float = 0.1
     high: float = 1.5
     opacity: float = 0.05
@@ -301,12 +302,12 @@ def ground_plan(
         what = f"no splat stands between {options.low:g} m and {options.high:g} m above the floor"
         raise BridgeError("bridge-file", what, "check which axis is up, the height of the floor and the band")
     below, _ = _standing(splats, to_irsim, options, -_FLOOR_DEPTH_M, options.low)
-    origin, shape = _extent(above, options)
+    origin, shape, cell = _extent(above, options)
     total = len(above) + len(below)
-    density = spread(above, origin, shape, options.cell, lambda done: progress(done, total))
-    ground = spread(below, origin, shape, options.cell, lambda done: progress(len(above) + done, total))
+    density = spread(above, origin, shape, cell, lambda done: progress(done, total))
+    ground = spread(below, origin, shape, cell, lambda done: progress(len(above) + done, total))
     occupied = density >= options.occupied
-    return Plan(density, occupied, ~occupied & (ground < _GROUND), origin, options.cell, len(above), too_large)
+    return Plan(density, occupied, ~occupied & (ground < _GROUND), origin, cell, len(above), too_large)
 
 
 def _standing(
@@ -342,23 +343,29 @@ def _normal_share(x: Floats) -> Floats:
     return result
 
 
-def _extent(above: Footprints, options: PlanOptions) -> tuple[tuple[float, float], tuple[int, int]]:
-    """Lower left corner, and number of cells along x and y."""
-    cell = options.cell
+def _extent(above: Footprints, options: PlanOptions) -> tuple[tuple[float, float], tuple[int, int], float]:
+    """Lower left corner [m], number of cells along x and y, and side of a cell [m]."""
+    low, high = np.empty(2), np.empty(2)
     if options.bounds is not None:
         low, high = np.array(options.bounds[:2]), np.array(options.bounds[2:])
     else:
-        margin = _MARGIN_CELLS * cell
-        low, high = np.empty(2), np.empty(2)
         for axis in range(2):
             order = np.argsort(above.center[:, axis])
             sums = np.cumsum(above.share[order])
             ends = np.searchsorted(sums, [_EDGE_SHARE * sums[-1], (1 - _EDGE_SHARE) * sums[-1]])
-            low[axis], high[axis] = above.center[order[np.minimum(ends, len(order) - 1)], axis] + [-margin, margin]
-        low = np.floor(low / cell) * cell
-    cells = np.ceil((high - low) / cell - 1e-6)
+            low[axis], high[axis] = above.center[order[np.minimum(ends, len(order) - 1)], axis]
     most = min(MAX_CELLS, options.max_cells)
+    margin = 0 if options.bounds is not None else _MARGIN_CELLS
+    cell = fitting_side(options.cell, low, high, most, lambda side: _counts(low, high, side, margin)[1].prod() <= most)
+    low, cells = _counts(low, high, cell, margin)
     if not (cells.min() >= 1 and cells.prod() <= most):
         what = f"the map would have {cells[0]:,.0f} x {cells[1]:,.0f} cells; 1 to {most:,} are possible"
         raise BridgeError("bridge-file", what, "give other bounds, or larger cells with --resolution")
-    return (round(float(low[0]), 9), round(float(low[1]), 9)), (int(cells[0]), int(cells[1]))
+    return (round(float(low[0]), 9), round(float(low[1]), 9)), (int(cells[0]), int(cells[1])), cell
+
+
+def _counts(low: Floats, high: Floats, cell: float, margin: int) -> tuple[Floats, Floats]:
+    """Lower left corner of a plan [m], and number of cells along x and y, with a margin of cells."""
+    if margin:
+        low, high = np.floor((low - margin * cell) / cell) * cell, high + margin * cell
+    return low, np.ceil((high - low) / cell - 1e-6)

@@ -167,7 +167,7 @@ def test_a_server_sets_limits(scene) -> None:
         (ImportLimits(triangles=3), "at most 3 are read"),
     ):
         with pytest.raises(BridgeError, match=said):
-            import_map(scene, "a.yaml", limits=limit)
+            import_map(scene, "a.yaml", resolution=0.05, limits=limit)
     Path("map.yaml").write_text("{image: ../x.pgm, resolution: 1, origin: [0, 0, 0]}")
     with pytest.raises(BridgeError) as wrong:
         import_map("map.yaml", "b.yaml", limits=inside)

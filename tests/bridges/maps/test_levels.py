@@ -154,7 +154,7 @@ def test_scenes_that_have_no_floor() -> None:
         with pytest.raises(BridgeError, match=said):
             occupancy(scene)
     with pytest.raises(BridgeError, match="--resolution"):
-        occupancy(box([0, 0, 0], [90_000, 90_000, 1]))
+        occupancy(box([0, 0, 0], [90_000, 90_000, 1]), resolution=0.05)
 
 
 @given(cells=st.floats(0, 6), seed=st.integers(0, 99))

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from irsim import api
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map, read_sidecar
-from irsim.bridges.maps.grid import Grid, grid_over, rows_of
+from irsim.bridges.maps.grid import SIDES, Grid, grid_over, rows_of
 from irsim.bridges.maps.kinds.navmesh import read_tiles
 from irsim.bridges.maps.voxels import floors_of, spans_of, walkable_of
 from tests.bridges.maps.scenes import TWO_ROOMS, UPSTAIRS, mesh_set, tile
@@ -190,15 +190,24 @@ def test_a_wall_over_a_door_leaves_the_door_open() -> None:
     assert y.max() > 4.9
 
 
-@pytest.mark.parametrize("size", [(5000.0, 4000.0), (1e7, 0.1), (1e9, 1e9)])
+@pytest.mark.parametrize("size", [(5000.0, 4000.0), (1e6, 0.1)])
 def test_too_many_cells_name_the_resolution_that_fits(size) -> None:
     with pytest.raises(BridgeError, match="--resolution") as caught:
         grid_over(np.zeros(2), np.array(size), 0.05, 1_000_000)
     advised = float(str(caught.value.fix).split()[-1])
+    assert advised in SIDES
     grid = grid_over(np.zeros(2), np.array(size), advised, 1_000_000)
-    assert 100_000 < grid.columns <= 1_000_000
-    with pytest.raises(BridgeError, match="--resolution"):  # the least grid has more cells than this bound
-        grid_over(np.zeros(2), np.array(size), 0.05, 4)
+    assert 30_000 < grid.columns <= 1_000_000
+    with pytest.raises(BridgeError, match="--resolution"):
+        grid_over(np.zeros(2), np.array(size), max(side for side in SIDES if side < advised), 1_000_000)
+
+
+def test_a_scene_for_which_no_cell_is_large_enough() -> None:
+    with pytest.raises(BridgeError, match="give a smaller scene") as caught:  # which meters_per_unit gives, too
+        grid_over(np.zeros(2), np.array([1e9, 1e9]), 0.05, 1_000_000, ", or its unit")
+    assert str(caught.value.fix).endswith("or its unit")
+    with pytest.raises(BridgeError, match="more than 16 cells"):  # the least grid has more cells than this bound
+        grid_over(np.zeros(2), np.array([5000.0, 4000.0]), 0.05, 4)
 
 
 def test_no_triangle_no_span() -> None:

@@ -155,5 +155,7 @@ def test_a_file_that_ends_anywhere_is_refused() -> None:
 
 def test_a_country_is_too_large() -> None:
     far = road("<line/>").replace('x="10"', 'x="900000"').replace('y="5"', 'y="70000"')
-    with pytest.raises(BridgeError, match="--resolution"):
+    with pytest.raises(BridgeError, match="--bounds"):  # the largest cells do not show a road
         import_map(write(road("<line/>"), far), "x.yaml")
+    with pytest.raises(BridgeError, match="--resolution 100, a part of it"):
+        import_map(write(road("<line/>"), far), "x.yaml", resolution=1)

@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 import irsim
 from irsim.bridges.base import BridgeError
 from irsim.bridges.ros.backends.bag import BagFolder
+from irsim.bridges.ros.bags import importing
 from irsim.bridges.ros.bags.importing import BagOptions, import_bag
 from irsim.bridges.ros.messages import Messages
 from irsim.cli.app import app
@@ -80,6 +81,14 @@ def test_scans_of_another_robot_make_no_map() -> None:
     assert "no scans of this robot" in alone.notes[0]
     assert import_bag("two", "rover.yaml", BagOptions(odom="/rover/odom")).scans == 21
     assert import_bag("two", "both.yaml", BagOptions(odom="/blind/odom", scan="/rover/scan")).scans == 21
+
+
+def test_cells_that_fit_are_chosen_and_said(bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(importing, "MAX_CELLS", 20_000)
+    imported = import_bag(bag, "coarse.yaml")
+    assert [note for note in imported.notes if "cells are 0.1 m" in note]
+    with pytest.raises(BridgeError, match=r"--resolution 0\.1\b"):
+        import_bag(bag, "none.yaml", BagOptions(resolution=0.05))
 
 
 def test_windows_and_options(bag: Path) -> None:

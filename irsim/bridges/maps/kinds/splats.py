@@ -10,7 +10,7 @@ import numpy as np
 from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import axes_of, inverse
 from irsim.bridges.maps.apart import read_apart
-from irsim.bridges.maps.grid import Grid
+from irsim.bridges.maps.grid import Grid, side_notes
 from irsim.bridges.maps.occupancy import cropped
 from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.sidecar import scene_transform
@@ -61,7 +61,8 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     plan = ground_plan(splats, inverse(scene_transform(frame, height, unit)), wanted)
     if plan.too_large:
         notes.append(f"{plan.too_large:,} splats were left out because they are larger than {wanted.max_size:g} m")
-    grid = Grid(*plan.origin, options.resolution, *plan.occupied.shape)
+    notes += side_notes(options.resolution, plan.cell)
+    grid = Grid(*plan.origin, plan.cell, *plan.occupied.shape)
     values, regions, kept = _kept(plan, grid, options)
     areas = [round(float(cells) * grid.resolution**2, 4) for cells in regions[:_MAX_REGIONS]]
     result = Occupancy(values, grid, frame, height, unit, 0, [(height, areas[0], False)], areas, kept, notes=notes)

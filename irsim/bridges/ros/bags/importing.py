@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.grid import fitting_side, side_notes
 from irsim.bridges.maps.writing import write_all_or_none
 from irsim.bridges.ros.bags.reading import Recorded, read_bag
 from irsim.bridges.ros.incoming import Scan
@@ -54,7 +55,7 @@ def map_of_scans(
     poses: Floats,
     scans: Sequence[Scan],
     path: Floats,
-    resolution: float,
+    resolution: float | None,
     radius: float,
     margin: float,
     range_max: float | None = None,
@@ -69,7 +70,7 @@ def map_of_scans(
         poses: (S, 3) poses of the lidar at the scans.
         scans: S scans.
         path: (T, 2) where the robot was: it was free there.
-        resolution: Side of a cell [m].
+        resolution: Side of a cell [m]; None for the smallest usual one with which the map is small enough.
         radius: Radius of the robot [m].
         margin: Border around the path and the hits [m].
         range_max: How far beams count [m]; None: for hits all of it, for beams that hit nothing 99 % of the hits.
@@ -85,11 +86,15 @@ def map_of_scans(
         reach = range_max
     ends = [_ends(pose, scan, reach, range_max) for pose, scan in zip(poses, scans, strict=True)]
     corners = np.concatenate([path, *(points[hit] for points, hit in ends)])
-    low = np.floor((corners.min(axis=0) - margin) / resolution) * resolution
-    counts = np.ceil((corners.max(axis=0) + margin - low) / resolution).astype(np.int64)
+    box = corners.min(axis=0) - margin, corners.max(axis=0) + margin
+    resolution = fitting_side(resolution, *box, MAX_CELLS)
+    low = np.floor(box[0] / resolution) * resolution
+    counts = np.ceil((box[1] - low) / resolution).astype(np.int64)
     if counts.prod() > MAX_CELLS:
         what = f"the map would have {counts[0]} x {counts[1]} cells"
-        raise BridgeError("bridge-file", what, f"a larger resolution, such as --resolution {4 * resolution:g}")
+        raise BridgeError(
+            "bridge-file", what, f"give a larger cell: --resolution {fitting_side(None, *box, MAX_CELLS):g}"
+        )
     hits, passes = np.zeros(counts, dtype=np.int64), np.zeros(counts, dtype=np.int64)
     for pose, (points, hit) in zip(poses, ends, strict=True):
         _count(hits, points[hit], low, resolution)
@@ -177,7 +182,7 @@ class BagOptions:
     Attributes:
         odom, scan: Topics; None for the only ones.
         mount: x, y [m], yaw [rad] of the lidar on the robot; None for what the bag says.
-        resolution: Side of a cell of the map [m].
+        resolution: Side of a cell of the map [m]; None for the smallest usual one with which the map is small enough.
         radius: Radius of the robot [m].
         step_time: [s].
         start, end: Window of time [s], from the first pose.
@@ -187,7 +192,7 @@ class BagOptions:
     odom: str | None = None
     scan: str | None = None
     mount: tuple[float, float, float] | None = None
-    resolution: float = 0.05
+    resolution: float | None = None
     radius: float = 0.2
     step_time: float = 0.1
     start: float = 0.0
@@ -254,6 +259,7 @@ def import_bag(
     if scans:
         at = np.array([composed(_pose_at(result, result.scan_times[index]), mount) for index in chosen])
         grid = map_of_scans(at, scans, poses[:, :2], options.resolution, options.radius, 1.0, options.range_max)
+        notes += side_notes(options.resolution, grid.resolution)
     elif result.scan_topic is None:
         named = " of this robot, so there is no map; --scan names another robot's"
         notes.append(f"the bag has no scans{named if result.elsewhere else ', so there is no map'}")
