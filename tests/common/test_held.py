@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import shutil
 import sys
 from pathlib import Path
@@ -76,3 +77,9 @@ def test_libraries_that_open_files_themselves_write_elsewhere(root: Path) -> Non
         place.mkdir()
         (place / "c").write_text("c", encoding="utf-8")
     assert (target / "c").read_text(encoding="utf-8") == "c"
+
+
+def test_the_calls_are_found_by_their_names(root: Path) -> None:
+    with hold(Folder(root)):
+        for call in (os.mkdir, os.open, os.listdir, os.rename, os.getcwd):
+            assert pickle.loads(pickle.dumps(call)) is call

@@ -29,8 +29,6 @@ def test_bundled_pictures_are_as_their_program_draws_them(
     assert names
     assert names == {path.name for path in folder.glob("*.png")}
     for name in names:
-        drawn, kept = (
-            np.asarray(Image.open(place / name).convert("RGBA")).astype(int) for place in (tmp_path, folder)
-        )
+        drawn, kept = (np.asarray(Image.open(place / name).convert("RGBA")).astype(int) for place in (tmp_path, folder))
         assert drawn.shape == kept.shape
         assert np.abs(drawn - kept).max() <= levels, name

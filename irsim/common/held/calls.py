@@ -50,6 +50,7 @@ def install() -> None:
     for supported in (os.supports_dir_fd, os.supports_fd, os.supports_follow_symlinks):
         supported.update([replaced[function] for function in supported if function in replaced])
     for name, function in new.items():
+        function.__module__, function.__qualname__ = "os", name  # where a pickle finds it
         setattr(os, name, function)
     builtins.open = io.open = replaced[REAL.file] = _file
     for module, kind in (("pathlib", "_NormalAccessor"), ("glob", "_StringGlobber")):
