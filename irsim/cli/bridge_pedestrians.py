@@ -11,9 +11,10 @@ from typing import Annotated, Any
 import typer
 from rich.text import Text
 
-from irsim.bridges.pedestrians.importing import Episodes
+from irsim.bridges.pedestrians.importing import Placing
 from irsim.bridges.pedestrians.importing import import_pedestrians as convert
 from irsim.bridges.pedestrians.scenario import Layout
+from irsim.bridges.pedestrians.suite import Episodes
 from irsim.bridges.pedestrians.tracks import FORMATS, Window
 from irsim.cli.options import Json
 from irsim.cli.output import console
@@ -37,6 +38,20 @@ def import_pedestrians(
             help="Benchmark suite to write: windows of the recording are its scenarios.",
         ),
     ] = None,
+    into: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="SCENE",
+            show_default=False,
+            help="Scene that gets the pedestrians; -o names another file for the result.",
+        ),
+    ] = None,
+    offset: Annotated[
+        str | None, typer.Option(metavar="X,Y", help="Move the recording in the world.", show_default="0,0")
+    ] = None,
+    rotate: Annotated[
+        float, typer.Option(help="Turn the recording about its origin, in degrees, before it is moved.")
+    ] = 0.0,
     form: Annotated[
         str | None,
         typer.Option("--format", metavar="FORMAT", help="obsmat, vsp or trajnet.", show_default="as the file looks"),
@@ -64,11 +79,15 @@ def import_pedestrians(
     robot_goal: Annotated[
         str | None, typer.Option(metavar="X,Y", help="Goal of the robot.", show_default="right edge")
     ] = None,
-    behavior: Annotated[str, typer.Option(help="Behavior of the robot.")] = "orca",
+    behavior: Annotated[str | None, typer.Option(help="Behavior of the robot.", show_default="orca")] = None,
     robot: Annotated[bool, typer.Option("--robot/--no-robot", help="Add a robot.")] = True,
-    step_time: Annotated[float, typer.Option(help="Step time of the scenario, in seconds.")] = 0.1,
+    step_time: Annotated[
+        float | None, typer.Option(help="Step time of the scenario, in seconds.", show_default="0.1")
+    ] = None,
     radius: Annotated[float, typer.Option(help="Radius of a pedestrian, in metres.")] = 0.25,
-    margin: Annotated[float, typer.Option(help="Free border around all that is recorded, in metres.")] = 1.0,
+    margin: Annotated[
+        float | None, typer.Option(help="Free border around all that is recorded, in metres.", show_default="1")
+    ] = None,
     smooth: Annotated[bool, typer.Option("--smooth", help="Smooth curves between the recorded places.")] = False,
     windows: Annotated[int, typer.Option(help="Largest number of windows of the suite.")] = 10,
     length: Annotated[
@@ -84,6 +103,8 @@ def import_pedestrians(
 ) -> None:
     """Turn recorded pedestrians into a scenario or a benchmark suite, in which each walks as it did, at its own times.
 
+    With --into, a scene of yours gets the pedestrians; its world, robots, obstacles and comments stay.
+
     In the suite a robot crosses windows of the recording, from and to places that the seeds draw.
 
     Write into a checkout of your own only what the licence of the data allows; irsim ships none.
@@ -94,13 +115,21 @@ def import_pedestrians(
     size: Any = _numbers("--image-size", image_size, 2)
     begin: Any = _numbers("--robot-start", robot_start, 2)
     goal: Any = _numbers("--robot-goal", robot_goal, 2)
+    moved: Any = _numbers("--offset", offset, 2)
+    own = {"step_time": step_time, "margin": margin, "start": begin, "goal": goal, "behavior": behavior}
+    given = {name: value for name, value in own.items() if value is not None}
+    if into is not None and given:
+        what = f"--into keeps the world and the robots of the scene, so {_option(next(iter(given)))} has no meaning"
+        raise InputError(what, "leave it out, and change the scene")
     layout = Layout(
-        file.name, step_time, radius, margin, "cubic" if smooth else "linear", begin, goal, behavior, robot
-    )  # fmt: skip
+        file.name, radius=radius, interpolation="cubic" if smooth else "linear", robot=robot and into is None, **given
+    )
     converted = convert(
         file,
         out,
         suite=suite,
+        into=into,
+        placing=Placing(rotate, moved or (0.0, 0.0)),
         form=form,
         fps=fps,
         window=Window(start, float("inf") if end is None else end, box),
@@ -116,7 +145,8 @@ def import_pedestrians(
         return
     if converted.file is not None:
         people = f"{converted.pedestrians} pedestrian{'' if converted.pedestrians == 1 else 's'}"
-        what = f": {people}, {converted.rows} recorded places, {converted.duration:g} s"
+        where = "" if converted.into is None else f" in {Path(converted.into).name}"
+        what = f": {people}{where}, {converted.rows} recorded places, {converted.duration:g} s"
         console().print(Text.assemble("wrote ", (converted.file, "bold"), what), soft_wrap=True)
     if converted.suite is not None:
         what = f": {len(converted.windows)} windows of {converted.length:g} s, 10 seeds each"
@@ -128,6 +158,11 @@ def import_pedestrians(
     if converted.suite is not None:
         command = f"irsim benchmark {converted.suite} --policies orca,sfm"
         console().print(Text.assemble("run it: ", (command, "cyan")), soft_wrap=True)
+
+
+def _option(name: str) -> str:
+    """The option that gives a part of a layout."""
+    return {"start": "--robot-start", "goal": "--robot-goal"}.get(name, f"--{name.replace('_', '-')}")
 
 
 def _numbers(option: str, text: str | None, count: int) -> tuple[float, ...] | None:

@@ -17,8 +17,9 @@ from irsim.api.read_input import read_scenario
 from irsim.benchmarks.stored import measure_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.bridges.base import BridgeError
-from irsim.bridges.pedestrians.importing import Episodes, ImportedPedestrians, import_pedestrians
+from irsim.bridges.pedestrians.importing import ImportedPedestrians, import_pedestrians
 from irsim.bridges.pedestrians.scenario import Layout
+from irsim.bridges.pedestrians.suite import Episodes
 from irsim.bridges.pedestrians.tracks import Window, read_recording
 from irsim.cli.bridge import bridge_app
 from irsim.common.files import TargetError

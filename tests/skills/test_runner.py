@@ -288,13 +288,14 @@ def test_the_commands_about_recorded_pedestrians_work(tmp_path: Path, monkeypatc
     (tmp_path / "obsmat.txt").write_text(crowds.obsmat())
     (tmp_path / "crowd.vsp").write_text(crowds.vsp())
     np.savetxt(tmp_path / "H.txt", np.array([[0.02, 0, -7.2], [0, -0.02, 5.76], [0, 0, 1]]))
+    (tmp_path / "hall.yaml").write_text("world: {width: 20, height: 16}\nrobot: [{kinematics: {name: diff}}]\n")
     told = commands(BRIDGE_PAGES / "pedestrians.md")
-    assert len(told) == 9
+    assert len(told) == 11
     for _, *words in told:
         done = CliRunner().invoke(app, [*words, *(["--seeds", "2"] if words[0] == "benchmark" else [])])
         assert done.exit_code == 0, (words, done.output)
     texts = {path.stem: path.read_text() for path in tmp_path.glob("*.yaml")}
-    assert set(texts) == {"crowd", "crowd_suite", "zara", "corner", "part", "people", "short"}
+    assert set(texts) == {"crowd", "crowd_suite", "zara", "corner", "part", "people", "short", "hall", "busy"}
     assert "robot:" not in texts["people"]
     places = [text[text.index("poses:") :].split("]")[0] for text in (texts["zara"], texts["corner"])]
     first = [np.array([float(v) for v in text.split("[[")[1].split(",")]) for text in places]

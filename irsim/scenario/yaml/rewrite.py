@@ -14,9 +14,10 @@ from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.yaml.edits import apply_edits
 from irsim.scenario.yaml.formatting import flow
 
-__all__ = ["rewrite", "yaml_flow"]
+__all__ = ["LOADER", "end_of", "node_at", "rewrite", "same_data", "yaml_flow"]
 
-_Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+"""The loader of PyYAML that gives positions; nothing is constructed with it."""
 
 
 def rewrite(text: str, edit: Edit, limits: Limits = DEFAULT_LIMITS) -> str | None:
@@ -32,17 +33,17 @@ def rewrite(text: str, edit: Edit, limits: Limits = DEFAULT_LIMITS) -> str | Non
         into a mapping. The data of the new text are compared with the edited data to find that out.
     """
     try:
-        root = yaml.compose(text, Loader=_Loader)
+        root = yaml.compose(text, Loader=LOADER)
         changed = _apply(text, root, edit)
-    except (yaml.YAMLError, LookupError, _NotPossible):
+    except (yaml.YAMLError, LookupError):
         return None
     before, after = compose(text, limits), compose(changed, limits)
-    if after.fatal or not _equal(after.data, apply_edits(_without_aliases(before.data), [edit])):
+    if after.fatal or not same_data(after.data, apply_edits(_without_aliases(before.data), [edit])):
         return None
     return changed
 
 
-class _NotPossible(Exception):
+class _NotPossible(LookupError):
     """The place does not exist in the text, or belongs to several values."""
 
 
@@ -60,7 +61,7 @@ def yaml_flow(value: Any) -> str:
 
 
 def _apply(text: str, root: yaml.Node | None, edit: Edit) -> str:
-    parent, last = _node_at(root, edit.path[:-1]), edit.path[-1]
+    parent, last = node_at(root, edit.path[:-1]), edit.path[-1]
     if isinstance(parent, yaml.SequenceNode):
         if edit.action != "replace" or not isinstance(last, int):
             raise _NotPossible
@@ -88,7 +89,8 @@ def _is_key(node: yaml.Node, part: str | int) -> bool:
     return isinstance(node, yaml.ScalarNode) and node.value == str(part)
 
 
-def _node_at(node: yaml.Node | None, path: Path) -> yaml.Node:
+def node_at(node: yaml.Node | None, path: Path) -> yaml.Node:
+    """The node at a path; a ``LookupError`` where there is none."""
     for part in path:
         if isinstance(node, yaml.MappingNode):
             node = next((value for key, value in node.value if _is_key(key, part)), None)
@@ -101,18 +103,18 @@ def _node_at(node: yaml.Node | None, path: Path) -> yaml.Node:
     return node
 
 
-def _end(node: yaml.Node) -> int:
+def end_of(node: yaml.Node) -> int:
     """Index where the text of a node ends; the end mark of a block would include the comments behind it."""
     if isinstance(node, yaml.MappingNode) and not node.flow_style and node.value:
-        return max(_end(node.value[-1][1]), _end(node.value[-1][0]))
+        return max(end_of(node.value[-1][1]), end_of(node.value[-1][0]))
     if isinstance(node, yaml.SequenceNode) and not node.flow_style and node.value:
-        return _end(node.value[-1])
+        return end_of(node.value[-1])
     return int(node.end_mark.index)
 
 
 def _replace(text: str, node: yaml.Node, value: Any, key: yaml.Node | None = None) -> str:
     new = yaml_flow(value)
-    start, end = node.start_mark.index, _end(node)
+    start, end = node.start_mark.index, end_of(node)
     while end > start and text[end - 1] in "\r\n":
         end -= 1
     block = isinstance(node, yaml.CollectionNode) and not node.flow_style
@@ -125,7 +127,7 @@ def _replace(text: str, node: yaml.Node, value: Any, key: yaml.Node | None = Non
 def _remove(text: str, parent: yaml.MappingNode, index: int) -> str:
     pairs = parent.value
     key, value = pairs[index]
-    start, end = key.start_mark.index, max(_end(value), key.end_mark.index)
+    start, end = key.start_mark.index, max(end_of(value), key.end_mark.index)
     if len(pairs) == 1:
         if parent.flow_style:
             return text[:start] + text[end:]
@@ -133,7 +135,7 @@ def _remove(text: str, parent: yaml.MappingNode, index: int) -> str:
     if parent.flow_style:
         if index + 1 < len(pairs):
             return text[:start] + text[pairs[index + 1][0].start_mark.index :]
-        return text[: _end(pairs[index - 1][1])] + text[end:]
+        return text[: end_of(pairs[index - 1][1])] + text[end:]
     line = text.rfind("\n", 0, start) + 1
     if text[line:start].strip():  # behind the dash of a list: the next pair moves up
         if index + 1 >= len(pairs):
@@ -155,7 +157,9 @@ def _add(text: str, parent: yaml.MappingNode, key: str, value: Any) -> str:
         return f"{text[:start]}{{{pair}}}{text[end:]}"
     last_key, last_value = parent.value[-1]
     end = (
-        max(_end(last_value), last_key.end_mark.index) if last_value.start_mark.index >= last_key.end_mark.index else -1
+        max(end_of(last_value), last_key.end_mark.index)
+        if last_value.start_mark.index >= last_key.end_mark.index
+        else -1
     )
     if end < 0:
         raise _NotPossible
@@ -169,6 +173,11 @@ def _add(text: str, parent: yaml.MappingNode, key: str, value: Any) -> str:
     if stop < 0:
         return f"{text}{newline}{indent}{pair}"
     return f"{text[: stop + 1]}{indent}{pair}{newline}{text[stop + 1 :]}"
+
+
+def same_data(a: Any, b: Any) -> bool:
+    """Whether data are equal, value by value and type by type."""
+    return _equal(_without_aliases(a), _without_aliases(b))
 
 
 def _without_aliases(value: Any) -> Any:
