@@ -77,7 +77,10 @@ def _extent(outlines: Outlines, solid: Any, options: ImportOptions) -> tuple[Any
     if options.bounds is not None:
         return np.array(options.bounds[:2]), np.array(options.bounds[2:])
     around = shapely.total_bounds([part for part in (solid, outlines.free) if part is not None])
-    return around[:2] - _MARGIN, around[2:] + _MARGIN
+    low, high = around[:2] - _MARGIN, around[2:] + _MARGIN
+    if outlines.ground is not None:
+        low, high = np.minimum(low, outlines.ground[:2]), np.maximum(high, outlines.ground[2:])
+    return low, high
 
 
 def _opened(region: Any, width: float) -> Any:

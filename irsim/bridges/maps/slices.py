@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from irsim.bridges.maps.grid import Triangles, clipped
 from irsim.common.arrays import Floats
@@ -118,7 +119,7 @@ def slice_of_mesh(triangles: Triangles, low: float, high: float) -> Any:
     ends = _cut(corners, max(low, bottom + 1e-6 * max(high - bottom, 1e-3)))
     if len(ends):
         lines = shapely.union_all(shapely.set_precision(shapely.linestrings(ends), 1e-6))
-        inside = shapely.build_area(lines)
+        inside = _inside(lines, ends)
         loose = lines.difference(inside.buffer(1e-5)) if not inside.is_empty else lines
         parts += [inside, loose.buffer(_SHEET)] if loose.length > 0.05 * lines.length else [inside]
     between = clipped(corners[..., [2, 0, 1]], (low, -math.inf, high, math.inf))
@@ -129,8 +130,46 @@ def slice_of_mesh(triangles: Triangles, low: float, high: float) -> Any:
     return shapely.union_all(areas) if areas and sum(one.area for one in areas) > _TINY else None
 
 
+def _inside(lines: Any, ends: Floats) -> Any:
+    """The area inside of surfaces that are cut, also of surfaces that overlap.
+
+    A face between the lines is inside if the surfaces run around it, or if an odd number of them is on one side of it,
+    as where some look inwards by mistake. If each surface is there twice, once for each side, it counts once.
+
+    Args:
+        lines: The cuts as lines that cross only at their ends.
+        ends: (S, 2, 2) the same lines, with the inside on their left.
+    """
+    faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(lines)))
+    if not len(faces):
+        return shapely.Polygon()
+    points = shapely.get_coordinates(shapely.point_on_surface(faces))
+    far = np.column_stack([np.full(len(points), ends[..., 0].max() + 1), points[:, 1]])
+    which, line = shapely.STRtree(np.array(shapely.linestrings(ends), dtype=object)).query(
+        shapely.linestrings(np.stack([points, far], axis=1))
+    )
+    (x, y), (start, end) = points[which].T, ends[line].transpose(1, 0, 2)
+    rises = end[:, 1] - start[:, 1]
+    crossed = (start[:, 1] <= y) != (end[:, 1] <= y)
+    share = (y - start[:, 1]) / np.where(crossed, rises, 1.0)
+    crossed &= start[:, 0] + share * (end[:, 0] - start[:, 0]) > x
+    around = np.bincount(which[crossed], np.sign(rises[crossed]), minlength=len(faces))
+    once = _first(ends)
+    counted = crossed & (once[line] if 2 * once.sum() == len(once) else True)
+    odd = np.bincount(which[counted], minlength=len(faces)) % 2 == 1
+    return shapely.union_all(faces[(around != 0) | odd])
+
+
+def _first(ends: Floats) -> NDArray[np.bool_]:
+    """Which lines are the first ones between their ends, in any direction."""
+    rounded = np.sort(np.round(ends * 1e6).view(np.complex128)[..., 0], axis=1)
+    result = np.zeros(len(ends), bool)
+    result[np.unique(rounded, axis=0, return_index=True)[1]] = True
+    return result
+
+
 def _cut(corners: Floats, height: float) -> Floats:
-    """(S, 2, 2) lines in which triangles cross a height."""
+    """(S, 2, 2) lines in which triangles cross a height; surfaces that look outwards have their inside on the left."""
     above = corners[..., 2] > height
     crossing = corners[above.any(axis=1) & ~above.all(axis=1)]
     above = crossing[..., 2] > height
@@ -139,5 +178,6 @@ def _cut(corners: Floats, height: float) -> Floats:
     a, b, c = np.take_along_axis(crossing, order[..., None], axis=1).transpose(1, 0, 2)
     ends = [a + (other - a) * ((height - a[:, 2]) / (other[:, 2] - a[:, 2]))[:, None] for other in (b, c)]
     lines = np.stack(ends, axis=1)[..., :2]
+    lines = np.where((above.sum(axis=1) == 1)[:, None, None], lines, lines[:, ::-1])
     long: Floats = lines[np.hypot(*(lines[:, 0] - lines[:, 1]).T) > _TINY]
     return long

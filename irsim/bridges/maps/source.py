@@ -206,6 +206,8 @@ class Outlines:
         things: The things that stand in the way.
         frame: Convention of the axes of the file's world, see :mod:`irsim.bridges.frames`.
         free: The area that is free by what the file says, such as roads; None for everything between the things.
+        ground: Left, lower, right and upper bound of a ground that the map covers, too [m]; None for a margin around
+            the things.
         meters_per_unit: Length of a unit of the file [m].
         height: Height of the floor along the upward axis [m].
         headroom, climb: Height and step of the robot that the file was made for [m]; None if the options decide.
@@ -216,6 +218,7 @@ class Outlines:
     things: list[Outlined]
     frame: str = "irsim"
     free: Any = None
+    ground: tuple[float, float, float, float] | None = None
     meters_per_unit: float = 1.0
     height: float = 0.0
     headroom: float | None = None

@@ -49,8 +49,6 @@ def differing_share(
     to: str,
     thick: float,
     wall: float,
-    robots: bool = False,
-    grown: float = 0.0,
     **options: Any,
 ) -> float:
     """Share by which the occupied area of an imported scene differs from the area of the scene.
@@ -61,18 +59,16 @@ def differing_share(
         to: Its format.
         thick: Thickness that lines get in it [m].
         wall: Thickness of the walls of the world and of rooms in it [m].
-        robots: Whether robots stand in the way in it.
-        grown: By how much the map's outlines are wider, as cells count that a surface touches [m].
         **options: Options of the import.
     """
     run = recorded(text, 1)
     export_run(run, file.partition("/")[0], to=to, objects="all")
     result = import_map(file, "back.yaml", **options)
-    expected = _area(run, thick, wall, robots, grown)
+    expected = _area(run, thick, wall)
     return abs(result.occupied * result.resolution**2 - expected) / expected
 
 
-def _area(run: Any, thick: float, wall: float, robots: bool, grown: float) -> float:
+def _area(run: Any, thick: float, wall: float) -> float:
     """Area of all that stands still in a scene [m²]."""
     scene = recorded_scene(run)
     regions = [shapely.box(*cell) for cell in merged_cells(scene.grid)] if scene.grid is not None else []
@@ -80,11 +76,11 @@ def _area(run: Any, thick: float, wall: float, robots: bool, grown: float) -> fl
     if room is not None:
         regions += [_region(solid, (0.0, 0.0, 0.0)) for solid in solids_of(room, wall)]
     for agent in scene.agents:
-        if robots or agent.role != "robot":
+        if agent.role != "robot":
             for part in agent.parts:
                 closed = isinstance(part, Line) and part.closed
                 regions += [_region(solid, agent.pose) for solid in solids_of(part, wall if closed else thick)]
-    return float(shapely.union_all(regions).buffer(grown, join_style="mitre").area)
+    return float(shapely.union_all(regions).area)
 
 
 def _region(solid: Any, pose: tuple[float, float, float]) -> Any:

@@ -37,10 +37,12 @@ class Collector:
 
     Attributes:
         left_out: Types of prims that have surfaces which are not read.
+        parts: Path of each prim that was read, and how many triangles it has.
     """
 
     def __init__(self, most: int) -> None:
         self.left_out: set[str] = set()
+        self.parts: list[tuple[str, int]] = []
         self._room = self._most = most
         self._time = Usd.TimeCode.EarliestTime()
         self._cache = UsdGeom.XformCache(self._time)
@@ -48,7 +50,11 @@ class Collector:
     def stage(self, stage: Any) -> Floats:
         """(T, 3, 3) corners of the triangles of a stage, frame and unit of the stage."""
         prims = Usd.PrimRange.Stage(stage, Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate))
-        return _joined([self._one(prim, self._world, 0) for prim in self._drawn(prims)])
+        result = []
+        for prim in self._drawn(prims):
+            result.append(self._one(prim, self._world, 0))
+            self.parts.append((str(prim.GetPath()), len(result[-1])))
+        return _joined(result)
 
     def _world(self, prim: Any) -> Any:
         return self._cache.GetLocalToWorldTransform(prim)
@@ -232,6 +238,10 @@ def _mesh(mesh: Any, name: str, time: Any, most: int) -> Floats:
     return corners[:, ::-1] if left_handed else corners
 
 
+_ROOMS = ("Ground", "Map", "Obstacles", "Robots", "Pedestrians")
+"""Prims below ``/World`` in which stages of irsim have surfaces."""
+
+
 def main() -> None:
     """Read the request, answer it."""
     serve(_read)
@@ -256,4 +266,25 @@ def _read(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
     if request["unit"] is None and not UsdGeom.StageHasAuthoredMetersPerUnit(stage):
         notes.append(f"it does not say its unit, which is then {scale:g} m; --meters-per-unit gives another")
     notes += layers.notes(stage)
-    return triangles, {"meters_per_unit": scale, "frame": "usd_yup" if up == "Y" else "usd", "notes": notes}
+    answer = {"meters_per_unit": scale, "frame": "usd_yup" if up == "Y" else "usd", "notes": notes}
+    return triangles, answer | {"own": _own(stage, collector.parts) if up == "Z" else None}
+
+
+def _own(stage: Any, parts: list[tuple[str, int]]) -> list[tuple[str, str, int]] | None:
+    """Room, name and number of triangles of all parts of a stage that irsim wrote.
+
+    Returns:
+        They follow one another as the triangles do; None for a stage of others, or with things of others in it.
+    """
+    if "irsim" not in stage.GetRootLayer().customLayerData:
+        return None
+    result = []
+    for path, count in parts:
+        room, _, name = path.removeprefix("/World/").partition("/")
+        if not count:
+            continue
+        if room not in _ROOMS or not path.startswith("/World/"):
+            return None
+        prim = stage.GetPrimAtPath(f"/World/{room}/{name.partition('/')[0]}") if name else None
+        result.append((room, str(prim.GetCustomDataByKey("irsim:name") or "") if prim else "", count))
+    return result

@@ -11,19 +11,26 @@ from pathlib import Path
 
 import numpy as np
 
+from irsim.bridges.maps import slices
 from irsim.bridges.maps.apart import read_apart
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
+from irsim.bridges.maps.grid import Triangles
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, Scene, unusable
 from irsim.common.archives import opened_archive
 from irsim.common.records import ContentError
+from irsim.common.text import clean
 
 __all__ = ["KIND"]
 
 _MAX_FILES = 10_000
 """Files in a ``.usdz``."""
+_LISTED = 5
+"""Names that a note lists."""
 
 
-def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
+def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene | Outlines:
     """Triangles of the meshes and boxes of a stage that are visible, at the earliest time.
+
+    Of a stage that irsim wrote, outlines of the map and of obstacles that do not drive or walk.
 
     Raises:
         BridgeError: The stage is damaged, refers to places outside of its folder and the root, or has no meshes.
@@ -41,7 +48,43 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     if not len(triangles):
         why = "; ".join(["it has no visible meshes", *answer["notes"]])
         raise unusable(path, why, "export the stage with its meshes, not only references")
-    return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"])
+    outlines = None if answer["own"] is None else _outlines(triangles, answer["own"], options)
+    if outlines is None or not outlines.things:
+        return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"])
+    if options.level is not None:
+        raise unusable(path, "irsim wrote it, and it has one floor, the ground", "leave out --level")
+    outlines.frame, outlines.meters_per_unit = frame, scale
+    outlines.notes += answer["notes"]
+    return outlines
+
+
+def _outlines(triangles: Triangles, parts: list[tuple[str, str, int]], options: ImportOptions) -> Outlines:
+    """Outlines of all that stands on the ground of a stage that irsim wrote, with the area that it had in irsim.
+
+    Args:
+        triangles: (T, 3, 3) corners [m].
+        parts: Room, name and number of triangles of one part after the other.
+        options: How the import is done.
+    """
+    low = (options.height or 0.0) + options.climb
+    high = low - options.climb + options.headroom
+    result = Outlines([], height=options.height or 0.0)
+    moving = set[str]()
+    end = 0
+    for room, name, count in parts:
+        part, end = triangles[end : end + count], end + count
+        if room == "Ground":
+            (left, lower), (right, upper) = part.min(axis=(0, 1))[:2], part.max(axis=(0, 1))[:2]
+            result.ground = (float(left), float(lower), float(right), float(upper))
+        elif room in ("Robots", "Pedestrians"):
+            moving.add(name)
+        elif (region := slices.slice_of_mesh(part, low, high)) is not None:
+            result.things.append(Outlined(name, region))
+    if moving:
+        listed = ", ".join(clean(name, 80) for name in sorted(moving)[:_LISTED])
+        more = ", …" if len(moving) > _LISTED else ""
+        result.notes.append(f"left out, as they move: {len(moving)} of its robots and people ({listed}{more})")
+    return result
 
 
 def _check_archive(path: Path) -> None:
