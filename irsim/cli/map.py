@@ -202,6 +202,10 @@ def import_(
     robot: Annotated[
         bool, typer.Option("--robot", help="Add a robot that drives from one end of the map to the other.")
     ] = False,
+    obstacles: Annotated[
+        bool,
+        typer.Option("--obstacles", help="Write circles, rectangles and polygons as obstacles instead of a picture."),
+    ] = False,
     ros_map: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Also write a map for the ROS map server: YAML file.", show_default=False),
@@ -233,7 +237,7 @@ def import_(
     elif out is None:
         raise InputError("the scenario to write is not named", "add -o scene.yaml, or --list-levels to only look")
     else:
-        result = import_map(file, out, ros_map=ros_map, robot=robot, overwrite=force, **options)
+        result = import_map(file, out, ros_map=ros_map, robot=robot, obstacles=obstacles, overwrite=force, **options)
     if json_output:
         print_json(result)
     else:
@@ -257,6 +261,8 @@ def _show_import(result: MapImportResult, out: Path | None, robot: bool) -> None
         shown.print(Text.assemble(*parts), soft_wrap=True)
 
     cells = f"{result.columns} x {result.rows} cells of {result.resolution:g} m, {result.occupied:,} occupied"
+    if result.obstacles:
+        cells = f"{result.obstacles:,} obstacle{'s' * (result.obstacles != 1)}; as a map {cells}"
     if result.files:
         line("wrote ", (", ".join(result.files), "bold"), f": {cells}")
     else:

@@ -136,6 +136,8 @@ class MapImportResult(Result):
     """Area that is known to be free [m²]; unknown cells are not part of it."""
     occupied: int
     """Cells that are occupied in the scenario."""
+    obstacles: int
+    """Obstacles of the scenario, if it has them instead of a picture."""
     unknown: int
     """Cells of which nothing is known."""
     unknown_as: str

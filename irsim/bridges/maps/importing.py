@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.entries import entries_of
 from irsim.bridges.maps.occupancy import eroded, occupancy_of
 from irsim.bridges.maps.shapes import occupancy_of_outlines
 from irsim.bridges.maps.sidecar import MapSidecar, scene_transform
@@ -49,6 +50,7 @@ def import_map(
     *,
     ros_map: str | Path | None = None,
     robot: bool = False,
+    obstacles: bool = False,
     overwrite: bool = False,
     limits: ImportLimits | None = None,
     **options: Any,
@@ -63,6 +65,8 @@ def import_map(
         out: Scenario to write.
         ros_map: YAML file of a map for the ROS map server to write as well; its picture is written beside it.
         robot: Whether the scenario gets a robot that drives from one end of the map to the other.
+        obstacles: Whether the scenario gets obstacles with the exact outlines instead of a picture; only for files
+            that have outlines, such as plans, footprints and worlds of Gazebo.
         overwrite: Whether to replace existing files.
         limits: How much an import may cost, and the folder that all files must lie in.
         **options: Fields of :class:`~irsim.bridges.maps.source.ImportOptions`.
@@ -83,6 +87,7 @@ def import_map(
     kind, result, source = read_occupancy(file, chosen, bounds)
     unknown = chosen.unknown or kind.unknown
     values, filled = _cells(result, chosen, unknown)
+    entries = _entries(kind, result, chosen) if obstacles else None
     trip = suggest_trip(result, values)
     if robot and trip is None:
         raise BridgeError("bridge-file", "the map has no room for a robot", "leave out the robot, or try less --radius")
@@ -105,10 +110,11 @@ def import_map(
     )
     about = f"Made from {clean(source['file'], 100)}" + (f", level {result.level}" if result.levels else "")
     placed = trip if robot else None
-    contents = files_of(result, values, filled, target, sidecar, about, placed, ros_target)
+    contents = files_of(result, values, filled, target, sidecar, about, placed, ros_target, entries)
     _check_targets([path for path, _ in contents], [_confined(file, "file", bounds), *result.parts])
     write_all_or_none(contents, overwrite=overwrite)
-    return _result(kind, result, values, filled, unknown, trip, [str(path) for path, _ in contents])
+    written = [str(path) for path, _ in contents]
+    return _result(kind, result, values, filled, unknown, trip, written, 0 if entries is None else len(entries))
 
 
 def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **options: Any) -> MapImportResult:
@@ -129,6 +135,25 @@ def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **optio
     unknown = chosen.unknown or kind.unknown
     values, filled = _cells(result, chosen, unknown)
     return _result(kind, result, values, filled, unknown, suggest_trip(result, values), [])
+
+
+def _entries(kind: Kind, result: Occupancy, options: ImportOptions) -> list[str]:
+    """Obstacles of a scenario as lines of YAML; remarks on them join those of the map.
+
+    Raises:
+        ArgumentError: The file has no outlines, or an option is about cells.
+    """
+    if result.things is None:
+        raise ArgumentError(f"{kind.title} has surfaces or cells, and no outlines", "leave out --obstacles")
+    for name in ("radius", "seed_point"):
+        if getattr(options, name) != ImportOptions.model_fields[name].default:
+            option = name.replace("_", "-")
+            raise ArgumentError(f"the option {name} changes cells, and no obstacles", f"leave out --{option}")
+    entries, notes = entries_of(result.things)
+    if (result.values < 0).any():
+        notes.append("what is beside the free area is open ground, as it has no outline; without --obstacles it is not")
+    result.notes += notes
+    return entries
 
 
 def _cells(result: Occupancy, options: ImportOptions, unknown: str) -> tuple[Floats, Floats]:
@@ -218,7 +243,14 @@ def _check_used(kind: Kind, options: ImportOptions) -> None:
 
 
 def _result(
-    kind: Kind, occupancy: Occupancy, values: Floats, filled: Floats, unknown: str, trip: Trip | None, files: list[str]
+    kind: Kind,
+    occupancy: Occupancy,
+    values: Floats,
+    filled: Floats,
+    unknown: str,
+    trip: Trip | None,
+    files: list[str],
+    obstacles: int = 0,
 ) -> MapImportResult:
     free = known_free(values)
     return MapImportResult(
@@ -230,6 +262,7 @@ def _result(
         origin=(occupancy.grid.x, occupancy.grid.y),
         free_area=round(float(free.sum()) * occupancy.grid.resolution**2, 4),
         occupied=int((filled > HALF).sum()),
+        obstacles=obstacles,
         unknown=int((values < 0).sum()),
         unknown_as=unknown,
         level=occupancy.level,

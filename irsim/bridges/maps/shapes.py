@@ -10,7 +10,16 @@ import shapely
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import SIDES, Bools, Grid, fits_into, fitting_side, grid_over, rows_of, side_notes
 from irsim.bridges.maps.regions import masked_regions
-from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Occupancy, Outlines
+from irsim.bridges.maps.source import (
+    FREE,
+    OCCUPIED,
+    UNKNOWN,
+    ImportLimits,
+    ImportOptions,
+    Occupancy,
+    Outlined,
+    Outlines,
+)
 
 __all__ = ["occupancy_of_outlines", "outlines_within"]
 
@@ -24,21 +33,25 @@ _LONG = 8
 """Cells around a thin part that is a wall, and no tip of a corner."""
 
 
-def outlines_within(outlines: Outlines, bounds: tuple[float, float, float, float] | None) -> list[Any]:
-    """The areas of all things, within bounds [m].
+def outlines_within(outlines: Outlines, bounds: tuple[float, float, float, float] | None) -> list[Outlined]:
+    """All things, or their parts within bounds [m].
 
     Raises:
-        BridgeError: There are no such areas.
+        BridgeError: There are no such parts.
     """
-    regions = [thing.region for thing in outlines.things]
+    things = outlines.things
     if bounds is not None:
-        regions = [
-            region for region in (thing.intersection(shapely.box(*bounds)) for thing in regions) if region.area > 0
-        ]
-    if not regions and outlines.free is None:
+        box = shapely.box(*bounds)
+        inside = [thing if box.contains(thing.region) else _cut_off(thing, box) for thing in things]
+        things = [thing for thing in inside if thing.region.area > 0]
+    if not things and outlines.free is None:
         where = "within the bounds" if bounds is not None else "between --climb and --headroom above the floor"
         raise BridgeError("bridge-file", f"the scene is not usable: nothing stands {where}", "check them, and --height")
-    return regions
+    return things
+
+
+def _cut_off(thing: Outlined, box: Any) -> Outlined:
+    return Outlined(thing.name, thing.region.intersection(box))
 
 
 def occupancy_of_outlines(outlines: Outlines, options: ImportOptions, limits: ImportLimits) -> Occupancy:
@@ -50,8 +63,8 @@ def occupancy_of_outlines(outlines: Outlines, options: ImportOptions, limits: Im
     Raises:
         BridgeError: Nothing stands in the way, or there are too many cells for a resolution that was asked for.
     """
-    regions = outlines_within(outlines, options.bounds)
-    solid = shapely.union_all(regions)
+    things = outlines_within(outlines, options.bounds)
+    solid = shapely.union_all([thing.region for thing in things])
     low, high = _extent(outlines, solid, options)
     side = fitting_side(options.resolution, low, high, limits.cells)
     if options.resolution is None and side == SIDES[0]:
@@ -67,6 +80,7 @@ def occupancy_of_outlines(outlines: Outlines, options: ImportOptions, limits: Im
         values[_painted(shapely.union_all(thin), grid, touched=True)] = OCCUPIED
         notes.append(f"walls thinner than a cell of {side:g} m are as thick as one; try --resolution {side / 2:g}")
     result = Occupancy(values, grid, outlines.frame, outlines.height, outlines.meters_per_unit, notes=notes)
+    result.things = things
     result.headroom, result.climb, result.parts = outlines.headroom, outlines.climb, outlines.parts
     _pick_part(result, options)
     return result

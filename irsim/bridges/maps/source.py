@@ -165,6 +165,7 @@ class Occupancy:
         headroom, climb: Height and step of the robot that the file was made for [m]; None if the options decide.
         notes: Remarks for the user.
         parts: Other files that it was read from.
+        things: Outlines that it was made from; None if it was made from something else.
     """
 
     values: Floats
@@ -181,6 +182,7 @@ class Occupancy:
     climb: float | None = None
     notes: list[str] = field(default_factory=list)
     parts: list[Path] = field(default_factory=list)
+    things: list[Outlined] | None = None
 
 
 @dataclass(frozen=True)

@@ -106,6 +106,7 @@ def files_of(
     about: str,
     trip: Trip | None,
     ros_map: Path | None,
+    entries: list[str] | None = None,
 ) -> list[tuple[Path, bytes]]:
     """Paths and contents of all files of an imported map.
 
@@ -118,6 +119,7 @@ def files_of(
         about: A sentence about the source.
         trip: Start and goal of a robot; None for no robot.
         ros_map: YAML file of a map for the ROS map server; None for no such file.
+        entries: Obstacles as lines of YAML, which take the place of the picture; None for the picture.
     """
     picture = target.with_suffix(".png")
     grid = occupancy.grid
@@ -129,14 +131,17 @@ def files_of(
         f"  width: {_short(width)}",
         f"  height: {_short(height)}",
         f"  offset: [{_short(grid.x)}, {_short(grid.y)}]",
-        f"  obstacle_map: {{name: image, path: {json.dumps(picture.name)}}}",
     ]
+    if entries is None:
+        lines.append(f"  obstacle_map: {{name: image, path: {json.dumps(picture.name)}}}")
     if trip is not None:
         lines += _robot(trip)
+    if entries:
+        lines += ["obstacle:", *entries]
     grey = np.round(255 * (1 - filled / 100)).astype(np.uint8)
     contents = [
         (target, with_modeline("\n".join(lines) + "\n", target).encode()),
-        (picture, _image(grey[:, ::-1].T, "PNG")),
+        *([(picture, _image(grey[:, ::-1].T, "PNG"))] if entries is None else []),
         (sidecar_path(target), sidecar.as_json().encode()),
     ]
     if ros_map is not None:
