@@ -164,7 +164,7 @@ def change(view: SimObject, name: str, value: Any) -> None:
         changed["watches"] = given is not None
     view.amend(replace(view.record, **changed))
     if name == "static" and given:
-        view._simulation.control[view.row] = 0.0
+        view._simulation.set_control(view.row, np.zeros(view.vel_dim))
         view._simulation.twist[view.row] = 0.0
 
 
@@ -187,9 +187,7 @@ def set_velocity(view: SimObject, velocity: Any, init: bool) -> None:
     if values.size != view.vel_dim:
         raise ValueError(f"the velocity of {view.name!r} is {view.vel_dim} numbers, not {velocity!r}")
     simulation, row = view._simulation, view.row
-    simulation.control[row, : min(3, view.vel_dim)] = values[:3]
-    if view.vel_dim > 3:
-        simulation.control_of(row, view.vel_dim)[:] = values
+    simulation.set_control(row, values)
     if init:
         simulation.state.set_initial(row, pose=False, control=True)
 

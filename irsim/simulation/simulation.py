@@ -248,9 +248,8 @@ class Simulation:
     def impose(self, row: int, control: Sequence[float] | NDArray[np.float64]) -> bool:
         """Impose a control on a row for the next step, and return whether limits of speed or acceleration cut it."""
         cut = core.impose_row(self.world, self.state, row, control)
-        if len(control) > 3 and self.drives is not None and (wide := self.drives.wide(row)) is not None:
-            return wide.impose(control, self.limits(row), self.scenario.world.step_time)
-        return cut
+        wide = self.drives.wide(row) if self.drives is not None and len(control) > 3 else None
+        return cut if wide is None else wide.impose(control, self.limits(row), self.scenario.world.step_time)
 
     def command_of(self, row: int, size: int) -> NDArray[np.float64]:
         """Return the (size,) command of a row."""
@@ -261,6 +260,11 @@ class Simulation:
         """Return the (size,) executed control of a row."""
         wide = self.drives.wide(row) if self.drives is not None and size > 3 else None
         return self.control[row, :size] if wide is None else wide.control
+
+    def set_control(self, row: int, control: NDArray[np.float64]) -> None:
+        """Set the executed control of a row, with all its components."""
+        self.control[row, : min(3, control.size)] = control[:3]
+        self.control_of(row, control.size)[:] = control
 
     def drive_of(self, row: int, size: int) -> NDArray[np.float64]:
         """Return the (size,) control of the drive of a row, before contacts (``collision_mode: contact``) change it."""
@@ -283,10 +287,8 @@ class Simulation:
         """Return the lower and upper limits of the controls of a row in the present scene, (vel_dim,) each."""
         record = self.scenario.objects[row % self.objects]
         low, high = np.array(record.vel_min, dtype=np.float64), np.array(record.vel_max, dtype=np.float64)
-        if self.pace[row] != 1.0:
-            speeds = list(speed_controls(record))
-            low[speeds] *= self.pace[row]
-            high[speeds] *= self.pace[row]
+        for bound in (low, high):
+            bound[list(speed_controls(record))] *= self.pace[row]
         return low, high
 
     def row_state(self, row: int, size: int) -> NDArray[np.float64]:

@@ -141,6 +141,9 @@ class PythonDrives:
         simulation = self._simulation
         for row in self._rows():
             record, _ = self._of(row)
+            wide = self.wide(row)
+            if wide is not None and not simulation.given[row]:
+                wide.command[:] = 0.0  # a command holds for one step
             stands = record.static or simulation.cannot_move(row)
             if row % simulation.objects in self._decided_by_core and not simulation.given[row] and not stands:
                 simulation.impose(row, self.control_alone(row, simulation.command[row].copy()))
@@ -204,7 +207,7 @@ class PythonDrives:
         wide = self.wide(row)
         if wide is not None:
             wide.limit(simulation.limits(row), dt, moves=not stands and bool(simulation.given[row]))
-            simulation.control[row] = wide.control[:CORE_CONTROLS]
+            simulation.set_control(row, wide.control)
         if stands:
             return
         control = simulation.control[row, : record.vel_dim] if wide is None else wide.control

@@ -140,12 +140,12 @@ def step_alone(view: Any, velocity: Any, sensor_step: bool) -> Floats:
     simulation, row = view._simulation, view.row
     within = simulation.hooks is not None and row in simulation.hooks.stepping
     if view.static or simulation.cannot_move(row):
-        simulation.control[row] = 0.0
+        simulation.set_control(row, np.zeros(view.vel_dim))
         return simulation.row_state(row, view.state_dim)[:, None]  # type: ignore[no-any-return]
     if not within:
         view.pre_process()
     simulation.impose(row, view.gen_behavior_vel(velocity).reshape(-1))
-    before = simulation.row_state(row, view.state_dim), simulation.control[row].copy()
+    before = simulation.row_state(row, view.state_dim), simulation.control_of(row, view.vel_dim).copy()
     simulation.move_alone(row)
     if "mid_process" in overridden(view):
         _settle(view, before)
@@ -224,7 +224,8 @@ class Hooks:
                 if "step" not in own:
                     simulation.impose(row, np.asarray(view.gen_behavior_vel(self._slots.get(row))).reshape(-1))
             if own & {"step", "mid_process"}:
-                control, drive = simulation.control[row].copy(), simulation.drive_of(row, view.vel_dim).copy()
+                size = view.vel_dim
+                control, drive = simulation.control_of(row, size).copy(), simulation.drive_of(row, size).copy()
                 self._before[row] = simulation.row_state(row, view.state_dim), control, drive
 
     def after_motion(self) -> None:
@@ -238,7 +239,7 @@ class Hooks:
                 if row in self._before:
                     state, control, drive = self._before[row]
                     simulation.set_row_state(row, state)
-                    simulation.control[row] = control
+                    simulation.set_control(row, control)
                     simulation.drive_of(row, view.vel_dim)[:] = drive
                 self.stepping.add(row)
                 try:
@@ -258,13 +259,13 @@ def _settle(view: Any, before: tuple[Floats, Floats]) -> None:
     """Call ``mid_process`` with the object in its previous state, then set the state that it returns."""
     simulation, row = view._simulation, view.row
     reached = simulation.row_state(row, view.state_dim)
-    control = simulation.control[row].copy()
+    control = simulation.control_of(row, view.vel_dim).copy()
     simulation.set_row_state(row, before[0])
-    simulation.control[row] = before[1]
+    simulation.set_control(row, before[1])
     settled = np.asarray(view.mid_process(reached[:, None].copy()), dtype=np.float64).reshape(-1)
     reached[: settled.size] = settled[: reached.size]
     simulation.set_row_state(row, reached)
-    simulation.control[row] = control
+    simulation.set_control(row, control)
 
 
 def _found(cls: type, name: str) -> Any:
