@@ -35,7 +35,7 @@ def test_the_ground_of_a_stage_comes_back_and_what_moves_does_not() -> None:
     result = import_map("out.usda", "back.yaml")
     assert [round(size * result.resolution) for size in (result.columns, result.rows)] == [14, 10]
     assert "left out, as they move: 1 of its robots and people (r)" in result.notes
-    assert result.free_area == pytest.approx(140 - result.occupied * result.resolution**2)
+    assert result.free_area == pytest.approx((result.columns * result.rows - result.occupied) * result.resolution**2)
     with pytest.raises(BridgeError, match="leave out --level"):
         import_map("out.usda", "level.yaml", level=0)
     Path("crate.usda").write_text('#usda 1.0\ndef Cube "crate"\n{\n    double size = 4\n}\n')
