@@ -186,7 +186,7 @@ def import_(
         str | None,
         typer.Option(
             metavar="FOLDER",
-            help="Folder with the models that a world names (model://table), or that a stage refers to (../part.usd).",
+            help="Folder with files that a world (model://table), a USD stage or a .gltf (../part.usd) names.",
             show_default=False,
         ),
     ] = None,

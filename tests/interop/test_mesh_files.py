@@ -74,6 +74,17 @@ def test_every_format_gives_the_same_map(tmp_path, suffix) -> None:
     assert (a != b).mean() < 0.01
 
 
+def test_a_gltf_reads_files_below_the_root(tmp_path) -> None:
+    (tmp_path / "scenes").mkdir()
+    file = tmp_path / "scenes/flat.gltf"
+    for name, content in trimesh.exchange.gltf.export_gltf(trimesh.Scene(soup(y_up(flat())))).items():
+        target = file if name.endswith(".gltf") else tmp_path / name
+        target.write_bytes(content.replace(b'"uri":"', b'"uri":"../'))
+    with pytest.raises(BridgeError, match="leads upwards"):
+        import_map(file, tmp_path / "a.yaml")
+    assert import_map(file, tmp_path / "a.yaml", root=str(tmp_path)).free_area == pytest.approx(40.5, abs=0.5)
+
+
 def test_nodes_move_and_mirror_their_meshes(tmp_path) -> None:
     scene = trimesh.Scene()
     turned = np.diag([1.0, 1.0, -1.0, 1.0])

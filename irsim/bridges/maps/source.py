@@ -53,7 +53,7 @@ class ImportOptions(Options):
     """Highest step that the robot climbs; what is lower is part of the floor."""
     root: str | None = None
     """Folder with models and meshes that a world of Gazebo names, as in ``model://table``; others are looked for where
-    ``GZ_SIM_RESOURCE_PATH`` and ``GAZEBO_MODEL_PATH`` say. A stage of USD may refer to files in it, too."""
+    ``GZ_SIM_RESOURCE_PATH`` and ``GAZEBO_MODEL_PATH`` say. A USD stage or a ``.gltf`` may refer to its files, too."""
     radius: Annotated[Meters, Field(ge=0, le=10)] = 0.0
     """Distance from obstacles within which cells become occupied. irsim keeps a robot's own shape clear of obstacles;
     only planning for points needs it."""

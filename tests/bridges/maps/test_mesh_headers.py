@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import struct
 import tracemalloc
 from contextlib import suppress
@@ -123,6 +124,35 @@ def test_a_gltf_may_have_files_beside_it_only(tmp_path) -> None:
             refused(file, said)
     (folder / "scene.gltf").write_text("[" * 100_000)
     refused(file, "not valid JSON")
+
+
+def test_a_gltf_may_have_files_below_the_root(tmp_path) -> None:
+    file = tmp_path / "show" / "scenes" / "scene.gltf"
+    for folder in ("show/scenes", "show/data", "secret"):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "a.bin").write_bytes(bytes(99))
+    (tmp_path / "show/data/link.bin").symlink_to(tmp_path / "secret/a.bin")
+    root = (tmp_path / "show").resolve()
+
+    def named(uri: str) -> None:
+        file.write_text(json.dumps({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 99, "uri": uri}]}))
+
+    for uri in ("a.bin", "../data/a.bin", "..%2Fdata/a.bin", str(root / "data/a.bin")):
+        named(uri)
+        _gltf.open_scene(file, LIMITS, root)
+    named("../data/a.bin")
+    with pytest.raises(BridgeError, match=f"leads upwards.*--root {re.escape(str(root))} if"):
+        _gltf.open_scene(file, LIMITS)
+    for uri, said in (
+        ("../../secret/a.bin", "leads upwards"),
+        ("../data/link.bin", "leads upwards"),
+        (str(tmp_path / "secret/a.bin"), "absolute"),
+        ("file:../data/a.bin", "not followed"),
+        ("../data/none.bin", "no file"),
+    ):
+        named(uri)
+        with pytest.raises(BridgeError, match=said):
+            _gltf.open_scene(file, LIMITS, root)
 
 
 VERTEX = "property float x\nproperty float y\nproperty float z\n"

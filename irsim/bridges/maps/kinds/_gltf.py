@@ -5,11 +5,13 @@ from __future__ import annotations
 import binascii
 import re
 import struct
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.apart import shared_folder
 from irsim.bridges.maps.kinds._gltf_scene import MESHOPT, SceneReader
 from irsim.bridges.maps.source import ImportLimits, unusable
 from irsim.common.records import ContentError, read_json
@@ -24,8 +26,30 @@ _COUNTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "
 _DATA = re.compile(r"data:[^,]{0,200};base64,")
 
 
-def open_scene(path: Path, limits: ImportLimits) -> SceneReader:
+@dataclass
+class _Files:
+    """The files that a scene is made of.
+
+    Attributes:
+        path: The file of the scene.
+        root: A second folder whose files a ``.gltf`` may refer to, besides its own one; None for none.
+        limits: How large they may be.
+        named: Name in the description -> file.
+    """
+
+    path: Path
+    root: Path | None
+    limits: ImportLimits
+    named: dict[str, Path] = field(default_factory=dict)
+
+
+def open_scene(path: Path, limits: ImportLimits, root: Path | None = None) -> SceneReader:
     """Check a ``.glb`` or ``.gltf`` file, and read its buffers.
+
+    Args:
+        path: The file.
+        limits: How much it may cost.
+        root: A second folder whose files a ``.gltf`` may refer to, besides its own one; None for none.
 
     Returns:
         The reader of its triangles.
@@ -35,8 +59,9 @@ def open_scene(path: Path, limits: ImportLimits) -> SceneReader:
     """
     content, binary, start = _content(path)
     try:
-        names = _checked(path, content, binary, limits)
-        buffers = [_bytes(path, item, names, start) for item in content.get("buffers", [])]
+        files = _Files(path, root, limits)
+        _check(files, content, binary)
+        buffers = [_bytes(path, item, files.named, start) for item in content.get("buffers", [])]
     except BridgeError:
         raise
     except (AttributeError, IndexError, KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
@@ -98,9 +123,10 @@ def _content(path: Path) -> tuple[Any, int | None, int]:
     return content, binary, start + 8
 
 
-def _checked(path: Path, content: dict[str, Any], binary: int | None, limits: ImportLimits) -> dict[str, Path]:
-    names: dict[str, Path] = {}
-    buffers = [_buffer(path, k, item, binary, names, limits) for k, item in enumerate(content.get("buffers", []))]
+def _check(files: _Files, content: dict[str, Any], binary: int | None) -> None:
+    """Check a description, and find the files that it names."""
+    path, limits = files.path, files.limits
+    buffers = [_buffer(files, k, item, binary) for k, item in enumerate(content.get("buffers", []))]
     views = []
     for k, view in enumerate(content.get("bufferViews", [])):
         begin, length = int(view.get("byteOffset", 0)), int(view["byteLength"])
@@ -124,12 +150,9 @@ def _checked(path: Path, content: dict[str, Any], binary: int | None, limits: Im
     if total > limits.triangles:
         what = f"it has {total:,} triangles, and at most {limits.triangles:,} are read"
         raise unusable(path, what, "simplify the mesh")
-    return names
 
 
-def _buffer(
-    path: Path, k: int, item: dict[str, Any], binary: int | None, names: dict[str, Path], limits: ImportLimits
-) -> int:
+def _buffer(files: _Files, k: int, item: dict[str, Any], binary: int | None) -> int:
     """Size of a buffer [bytes]."""
     length, uri = int(item["byteLength"]), item.get("uri")
     if _is_fallback(item):
@@ -142,31 +165,34 @@ def _buffer(
         except binascii.Error:
             have = 0
     else:
-        have = _file_beside(path, uri, binary, names, limits)
+        have = _named_file(files, uri, binary)
     if length < 0 or length > have:
-        raise unusable(path, f"its part buffers[{k}] promises {length:,} bytes and has {have:,}")
+        raise unusable(files.path, f"its part buffers[{k}] promises {length:,} bytes and has {have:,}")
     return length
 
 
-def _file_beside(path: Path, uri: str, binary: int | None, names: dict[str, Path], limits: ImportLimits) -> int:
-    """Size of a file that a ``.gltf`` names, in its own folder or below."""
-    name, shown = unquote(uri), clean(uri, 100)
+def _named_file(files: _Files, uri: str, binary: int | None) -> int:
+    """Size of a file that a ``.gltf`` names, in its own folder, in the root, or below them."""
+    path, name, shown = files.path, unquote(uri), clean(uri, 100)
+    file = path.parent / name
+    fix = "export it as .glb with everything inside"
     why = "a .glb has all in itself" if binary is not None else None
     if why is None and re.match(r"[A-Za-z][A-Za-z0-9+.-]*:", name):
         why = "addresses are not followed"
-    if why is None:
+    if why is None and not (files.root is not None and file.resolve().is_relative_to(files.root)):
         outside = why_outside(name, path.parent)
         why = None if outside is None else f"the name {outside}"
+        shared = shared_folder(path.resolve().parent, file.resolve().parent) if name.isprintable() else None
+        if outside is not None and shared is not None:
+            fix = f"give --root {clean(str(shared), 300)} if its files there may be read, or {fix}"
     if why is not None:
-        fix = "export it as .glb with everything inside"
         raise BridgeError("bridge-file", f"'{path.name}' refers to '{shown}', which is not read: {why}", fix)
-    file = path.parent / name
     if not file.is_file():
         raise unusable(path, f"there is no file '{shown}' beside it", "keep the files of a .gltf together")
     size = file.stat().st_size
-    if size > limits.bytes:
-        raise unusable(path, f"'{shown}' has {size:,} bytes, and at most {limits.bytes:,} are read")
-    names[uri] = names[name] = file
+    if size > files.limits.bytes:
+        raise unusable(path, f"'{shown}' has {size:,} bytes, and at most {files.limits.bytes:,} are read")
+    files.named[uri] = files.named[name] = file
     return size
 
 

@@ -44,8 +44,9 @@ def load(path: Path, request: dict[str, Any]) -> tuple[Triangles, dict[str, Any]
     if suffix in (".obj", ".dae") and path.stat().st_size > _MAX_TEXT:
         raise Refused(f"as text it may have at most {_MAX_TEXT:,} bytes", "convert it to .glb")
     if suffix in (".glb", ".gltf"):
+        root = None if request.get("root") is None else Path(request["root"])
         with np.errstate(all="ignore"):
-            parts = [_placed(*part) for part in open_scene(path, limits).triangles()]
+            parts = [_placed(*part) for part in open_scene(path, limits, root).triangles()]
         return _joined(parts), said
     if suffix == ".stl":
         check_stl(path)

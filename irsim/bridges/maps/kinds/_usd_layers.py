@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from irsim.bridges.maps.apart import Refused
+from irsim.bridges.maps.apart import Refused, shared_folder
 from irsim.common.extras import require
 from irsim.common.text import clean
 
@@ -145,7 +145,7 @@ class Layers:
             return
         fix = flattening(self.path)
         if not address:
-            shared = _shared(self.path.resolve().parent, Path(_file_of(place)).resolve().parent)
+            shared = shared_folder(self.path.resolve().parent, Path(_file_of(place)).resolve().parent)
             if shared is not None:
                 fix = f"give --root {clean(str(shared), 300)} if its files there may be read, or {fix}"
         what = f"it refers to '{clean(asset, _SHOWN)}', which is outside of its folder"
@@ -168,12 +168,6 @@ class Layers:
 def _file_of(identifier: str) -> str:
     """The file of a layer, which may be inside an archive or have arguments."""
     return str(Ar.SplitPackageRelativePathOuter(Sdf.Layer.SplitIdentifier(identifier)[0])[0])
-
-
-def _shared(one: Path, other: Path) -> Path | None:
-    """The smallest folder that contains two others; None if that is a whole disk."""
-    folder = next((above for above in (one, *one.parents) if other.is_relative_to(above)), None)
-    return None if folder is None or folder == folder.parent else folder
 
 
 def _reason(error: Exception) -> str:

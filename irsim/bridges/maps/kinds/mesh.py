@@ -38,12 +38,13 @@ _STEEP = 1.5
 """How much more area must face along another axis before a note says so."""
 
 
-def read_triangles(path: Path, limits: ImportLimits) -> tuple[Triangles, dict[str, Any]]:
+def read_triangles(path: Path, limits: ImportLimits, root: str | None = None) -> tuple[Triangles, dict[str, Any]]:
     """Triangles of a mesh, read in a process of its own.
 
     Args:
         path: File whose suffix says its format: ``.glb``, ``.gltf``, ``.obj``, ``.ply``, ``.stl`` or ``.dae``.
         limits: How much it may cost.
+        root: A second folder whose files a ``.gltf`` may refer to, besides its own one; None for none.
 
     Returns:
         (T, 3, 3) corners, counterclockwise seen from outside, frame and unit of the file; and ``up``, the axis that
@@ -52,7 +53,9 @@ def read_triangles(path: Path, limits: ImportLimits) -> tuple[Triangles, dict[st
     Raises:
         BridgeError: The file is damaged, refers to other files, or has no triangles.
     """
-    triangles, said = read_apart(path, f"{__package__}._mesh_process", limits)
+    triangles, said = read_apart(
+        path, f"{__package__}._mesh_process", limits, {"root": root and str(Path(root).resolve())}
+    )
     return _checked(path, triangles), said
 
 
@@ -62,7 +65,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     Raises:
         BridgeError: The file is damaged, refers to other files, or has no triangles.
     """
-    triangles, said = read_triangles(path, limits)
+    triangles, said = read_triangles(path, limits, options.root)
     up = said["up"] if options.up == "auto" else options.up
     areas = np.abs(_normals(triangles)).sum(axis=0)
     notes = list(said["notes"])
@@ -109,5 +112,5 @@ KIND = Kind(
     roots=("COLLADA",),
     read=read,
     libraries=("trimesh",),
-    unused=("opacity", "lanes", "root"),
+    unused=("opacity", "lanes"),
 )

@@ -12,14 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import slices
 from irsim.bridges.maps.kinds import mesh
 from irsim.bridges.maps.kinds._mjcf_text import Classes, inside, numbers_of, place_of, rotation_along, whole_model
-from irsim.bridges.maps.kinds._obj import read_obj
+from irsim.bridges.maps.kinds._named_meshes import read_named_mesh
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
 from irsim.common.arrays import Floats
-from irsim.common.extras import ExtraError, require
 from irsim.common.text import clean
 
 __all__ = ["KIND"]
@@ -201,17 +199,8 @@ def _mesh(model: _Model, name: str, place: Floats, band: tuple[float, float]) ->
     if source is None:
         model.leave("the mesh is not here or of another kind, --root names the folder that holds it", name)
         return None
-    try:
-        if source.suffix.lower() == ".obj":
-            triangles = read_obj(source, model.limits)
-        else:
-            require(mesh.KIND.extra, *mesh.KIND.libraries)
-            triangles = mesh.read(source, ImportOptions(up="z"), model.limits).solid
-    except ExtraError:
-        model.leave("meshes need the extra: pip install 'irsim-mcp[mesh]'", name)
-        return None
-    except BridgeError as error:
-        model.leave(str(error), name)
+    triangles = read_named_mesh(source, model.limits, lambda why: model.leave(why, name))
+    if triangles is None:
         return None
     model.parts.append(source)
     points = _moved(reference, np.asarray(triangles, dtype=np.float64).reshape(-1, 3)) * scale

@@ -15,15 +15,13 @@ from typing import Any
 import numpy as np
 import shapely
 
-from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import slices
 from irsim.bridges.maps.kinds import mesh
-from irsim.bridges.maps.kinds._obj import read_obj
+from irsim.bridges.maps.kinds._named_meshes import read_named_mesh
 from irsim.bridges.maps.kinds._sdf_places import Frames, find_file, model_of, pose_of
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
 from irsim.bridges.maps.xml_files import find_number, find_numbers, read_xml
 from irsim.common.arrays import Floats
-from irsim.common.extras import ExtraError, require
 from irsim.common.text import clean
 
 __all__ = ["KIND"]
@@ -265,17 +263,8 @@ def _mesh(world: _World, file: Path, geometry: ET.Element, place: Floats, band: 
     if located.suffix.lower() not in mesh.KIND.suffixes:
         world.leave(f"meshes are read from {', '.join(mesh.KIND.suffixes)}", uri)
         return None
-    try:
-        if located.suffix.lower() == ".obj":
-            triangles = read_obj(located, world.limits)
-        else:
-            require(mesh.KIND.extra, *mesh.KIND.libraries)
-            triangles = mesh.read(located, ImportOptions(up="z"), world.limits).solid
-    except ExtraError:
-        world.leave("meshes need the extra: pip install 'irsim-mcp[mesh]'", uri)
-        return None
-    except BridgeError as error:
-        world.leave(str(error), uri)
+    triangles = read_named_mesh(located, world.limits, lambda why: world.leave(why, uri))
+    if triangles is None:
         return None
     world.parts.append(located)
     scale = np.array(find_numbers(file, geometry.find("scale"), 3, (1, 1, 1)))

@@ -1,15 +1,39 @@
-"""Meshes of OBJ files, which are text and need no library: their corners and faces, and nothing that they name."""
+"""Meshes that worlds and models name: OBJ files are text and need no library, others are read as the kind ``mesh``."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
+from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import Triangles
-from irsim.bridges.maps.source import ImportLimits, unusable
+from irsim.bridges.maps.kinds import mesh
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, unusable
+from irsim.common.extras import ExtraError, require
 
-__all__ = ["read_obj"]
+__all__ = ["read_named_mesh", "read_obj"]
+
+
+def read_named_mesh(path: Path, limits: ImportLimits, leave: Callable[[str], None]) -> Triangles | None:
+    """Triangles of a file that a world or a model names, in its own axes with z up; None if it cannot be read.
+
+    Args:
+        path: The file.
+        limits: How large it may be.
+        leave: Is called with the reason why the mesh is left out.
+    """
+    try:
+        if path.suffix.lower() == ".obj":
+            return read_obj(path, limits)
+        require(mesh.KIND.extra, *mesh.KIND.libraries)
+        return mesh.read(path, ImportOptions(up="z"), limits).solid
+    except ExtraError:
+        leave("meshes need the extra: pip install 'irsim-mcp[mesh]'")
+    except BridgeError as error:
+        leave(str(error))
+    return None
 
 
 def read_obj(path: Path, limits: ImportLimits) -> Triangles:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.kinds._obj import read_obj
+from irsim.bridges.maps.kinds._named_meshes import read_obj
 from irsim.bridges.maps.source import ImportLimits
 
 _CORNERS = "v 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0\nv 0 1 0\n"
