@@ -6,7 +6,6 @@ import random
 import shutil
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +22,6 @@ from irsim.bridges.json_lines.bridge import JsonLinesBridge
 from irsim.bridges.maps.importing import import_map
 from irsim.bridges.maps.kinds._gltf import open_scene as open_gltf
 from irsim.bridges.maps.sidecar import read_sidecar
-from irsim.bridges.maps.source import ImportLimits
 from irsim.bridges.pedestrians.importing import import_pedestrians
 from irsim.bridges.pedestrians.tracks import read_homography
 from irsim.bridges.splats.reading import read_splats
@@ -51,16 +49,17 @@ from tests.bridges import crowds
 from tests.bridges.maps import scenes
 from tests.bridges.maps.test_roads import road
 from tests.bridges.splats import scenes as splat_scenes
+from tests.damaged.kind import IMPORT, Kind, made, read_map_of, text
+from tests.damaged.places import PLACES
+from tests.damaged.verdicts import VERDICTS
 from tests.learning.tasks import corridor
 from tests.policies.converters import torch_bytes
 from tests.policies.networks.examples import go_to_goal
 from tests.runs.conftest import ROOM
 
-__all__ = ["KINDS", "Kind"]
+__all__ = ["KINDS"]
 
-Read = Callable[[Path, random.Random], object]
 _LIMITS = Limits(cells=250_000, map_bytes=1 << 20, objects=60, robots=60, steps=50)
-_IMPORT = ImportLimits(triangles=100_000, cells=250_000)
 _MAP = "image: plan.png\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
 _HALL = "world: {width: 10, height: 10, obstacle_map: FILE}\nrobot: {kinematics: {name: diff}, state: [1, 1]}\n"
 _ROADS = f'<?xml version="1.0"?><OpenDRIVE><header revMajor="1" revMinor="7"/>{road("<line/>")}</OpenDRIVE>'
@@ -68,30 +67,6 @@ _NEUPAN = (
     "mpc: {receding: 10}\nrobot: {kinematics: diff, length: 1.6, width: 2.0, max_speed: [8, 1]}\n"
     "pan: {iter_num: 2, dune_checkpoint: model.pth}\nadjust: {q_s: 1.0}\nref_speed: 4\n"
 )
-
-
-@dataclass(frozen=True)
-class Kind:
-    """A kind of file.
-
-    Attributes:
-        make: Writes an example into an empty folder and returns its file.
-        read: Reads the file.
-        share: One of so many ways is tried, for kinds whose reading takes long.
-    """
-
-    make: Callable[[Path], Path]
-    read: Read
-    share: int = 1
-
-
-def _text(name: str, text: str, **others: str) -> Callable[[Path], Path]:
-    def make(folder: Path) -> Path:
-        for file, content in {**others, name: text}.items():
-            (folder / file).write_text(content, encoding="utf-8")
-        return folder / name
-
-    return make
 
 
 def _read_scenario(file: Path, draw: random.Random) -> None:
@@ -178,18 +153,6 @@ def _read_pedestrians(file: Path, draw: random.Random) -> None:
     )
 
 
-def _import(file: Path, draw: random.Random) -> None:
-    import_map(file, file.with_name("scene.yaml"), limits=_IMPORT, overwrite=True, resolution=0.2)
-
-
-def _made(write: Callable[[Path], object], name: str) -> Callable[[Path], Path]:
-    def make(folder: Path) -> Path:
-        write(folder / name)
-        return folder / name
-
-    return make
-
-
 def _torch(old: bool) -> Callable[[Path], Path]:
     values = np.arange(6, dtype="<f4").tobytes()
     body = torch_bytes.mapping(
@@ -199,7 +162,7 @@ def _torch(old: bool) -> Callable[[Path], Path]:
         content = torch_bytes.old_file(body, {"0": (6, values), "1": (2, values[:8])})
     else:
         content = torch_bytes.zip_file(body, {"0": values, "1": values[:8]})
-    return _made(lambda file: file.write_bytes(content), "net.pt")
+    return made(lambda file: file.write_bytes(content), "net.pt")
 
 
 def _read_torch(file: Path, draw: random.Random) -> None:
@@ -219,7 +182,7 @@ def _read_plan(file: Path, draw: random.Random) -> None:
 
 def _splats(encoding: str) -> Callable[[Path], Path]:
     columns = splat_scenes.room(spacing=1.0).columns[:40]
-    return _made(lambda file: splat_scenes.write_ply(file, columns, encoding=encoding), "room.ply")
+    return made(lambda file: splat_scenes.write_ply(file, columns, encoding=encoding), "room.ply")
 
 
 def _mesh_set() -> bytes:
@@ -250,7 +213,7 @@ def _read_answer(file: Path, draw: random.Random) -> None:
 
 _RUN_FILES = ("run.json", "resolved.json", "result.json", "scenario.yaml", "trace-0000.npz")
 KINDS: Mapping[str, Kind] = {
-    "scenario": Kind(_text("room.yaml", ROOM), _read_scenario),
+    "scenario": Kind(text("room.yaml", ROOM), _read_scenario),
     "map-yaml": Kind(_map_file, _read_map),
     "png": Kind(_picture("png"), _read_map),
     "png-palette": Kind(_picture("png", "P"), _read_map),
@@ -259,34 +222,36 @@ KINDS: Mapping[str, Kind] = {
     "jpeg": Kind(_picture("jpg"), _read_map),
     "bmp": Kind(_picture("bmp"), _read_map),
     "gif": Kind(_picture("gif"), _read_map),
-    "neupan": Kind(_text("planner.yaml", _NEUPAN, **{"model.pth": ""}), lambda file, draw: NeuPanPolicy(str(file))),
-    "suite": Kind(_text("suite.yaml", SUITE), lambda file, draw: expand(*load_suite(str(file))), share=4),
-    "task": Kind(_made(lambda file: file.write_text(yaml.safe_dump(corridor())), "task.yaml"), _read_task, share=2),
+    "neupan": Kind(text("planner.yaml", _NEUPAN, **{"model.pth": ""}), lambda file, draw: NeuPanPolicy(str(file))),
+    "suite": Kind(text("suite.yaml", SUITE), lambda file, draw: expand(*load_suite(str(file))), share=4),
+    "task": Kind(made(lambda file: file.write_text(yaml.safe_dump(corridor())), "task.yaml"), _read_task, share=2),
     "settings": Kind(_training("settings.yaml"), lambda file, draw: RunFolder(file.parent).settings()),
     "progress": Kind(_training("progress.jsonl"), lambda file, draw: RunFolder(file.parent).rounds()),
-    "key-value": Kind(_text("word", "0.5"), _read_words),
+    "key-value": Kind(text("word", "0.5"), _read_words),
     **{f"run-{name.partition('.')[0]}": Kind(_run(name), _read_run) for name in _RUN_FILES},
     "benchmark-log": Kind(_log, _read_log),
-    "policy": Kind(_made(lambda file: save_network(file, go_to_goal()), "net.npz"),
+    "policy": Kind(made(lambda file: save_network(file, go_to_goal()), "net.npz"),
                    lambda file, draw: open_policy(str(file))),
     "torch": Kind(_torch(old=False), _read_torch),
     "torch-old": Kind(_torch(old=True), _read_torch),
     "plan": Kind(_plan_file, _read_plan),
-    "navmesh": Kind(_made(lambda file: file.write_bytes(_mesh_set()), "room.navmesh"), _import, share=2),
-    "roads": Kind(_made(lambda file: file.write_text(_ROADS), "town.xodr"), _import, share=4),
-    "gltf": Kind(_made(lambda file: scenes.write_glb(file, scenes.box([0, 0, 0], [1, 1, 1])), "scene.glb"),
-                 lambda file, draw: file.is_file() and open_gltf(file, _IMPORT)),
+    "navmesh": Kind(made(lambda file: file.write_bytes(_mesh_set()), "room.navmesh"), read_map_of, share=2),
+    "roads": Kind(made(lambda file: file.write_text(_ROADS), "town.xodr"), read_map_of, share=4),
+    "gltf": Kind(made(lambda file: scenes.write_glb(file, scenes.box([0, 0, 0], [1, 1, 1])), "scene.glb"),
+                 lambda file, draw: file.is_file() and open_gltf(file, IMPORT)),
     "splats": Kind(_splats("binary_little_endian"), lambda file, draw: read_splats(file, harmonics=True)),
     "splats-text": Kind(_splats("ascii"), lambda file, draw: read_splats(file)),
     "sidecar": Kind(_sidecar, lambda file, draw: read_sidecar(file)),
-    "feedback": Kind(_text("line", '{"version": 1, "poses": {"rover": [1, 2.5, 0]}, "ranges": {"a": [1, null]}}'),
+    "feedback": Kind(text("line", '{"version": 1, "poses": {"rover": [1, 2.5, 0]}, "ranges": {"a": [1, null]}}'),
                      _read_feedback),
-    "calls": Kind(_text("calls.jsonl", '{"tool": "run_episode", "error": false, "tokens": 12}\n' * 2),
+    **PLACES,
+    **VERDICTS,
+    "calls": Kind(text("calls.jsonl", '{"tool": "run_episode", "error": false, "tokens": 12}\n' * 2),
                   lambda file, draw: cost_of(file)),
-    "obsmat": Kind(_text("obsmat.txt", crowds.obsmat()), _read_pedestrians, share=2),
-    "trajnet": Kind(_text("crowd.txt", crowds.trajnet()), _read_pedestrians, share=2),
-    "vsp": Kind(_text("crowd.vsp", crowds.vsp()), _read_pedestrians, share=2),
-    "homography": Kind(_text("H.txt", "0.02 0 1\n0 0.02 -2\n0 0 1\n"), lambda file, draw: read_homography(file)),
-    "answer": Kind(_text("line", '{"type": "hello", "protocol": 1, "name": "far", "needs": {"scan": true}}'),
+    "obsmat": Kind(text("obsmat.txt", crowds.obsmat()), _read_pedestrians, share=2),
+    "trajnet": Kind(text("crowd.txt", crowds.trajnet()), _read_pedestrians, share=2),
+    "vsp": Kind(text("crowd.vsp", crowds.vsp()), _read_pedestrians, share=2),
+    "homography": Kind(text("H.txt", "0.02 0 1\n0 0.02 -2\n0 0 1\n"), lambda file, draw: read_homography(file)),
+    "answer": Kind(text("line", '{"type": "hello", "protocol": 1, "name": "far", "needs": {"scan": true}}'),
                    _read_answer),
 }  # fmt: skip

@@ -16,11 +16,13 @@ import irsim
 from irsim.benchmarks.log import Log, logged
 from irsim.bridges.base import BridgeError
 from irsim.bridges.splats.reading import read_splats
+from irsim.diagnostics.errors import ArgumentError
 from irsim.policies.networks import open_network
 from irsim.policies.networks.errors import PolicyFileError
 from irsim.results.benchmark import BenchmarkResult
 from irsim.runs.files import RunError
 from irsim.runs.reading import open_run
+from irsim_evals.report.load import load_proof
 from tests.bridges.splats.scenes import room, write_ply
 from tests.runs.conftest import ROOM
 
@@ -149,6 +151,14 @@ def test_a_log_of_other_seeds_with_good_digests_is_not_believed(workspace: Path)
         pass
     with pytest.raises(RunError, match="it has seed 2"):
         irsim.benchmark("room.yaml", "dash", seeds=[1], steps=3, log="log.jsonl", resume=True)
+
+
+@pytest.mark.parametrize("wrong", [-1, 10, 10**13])
+def test_a_proof_with_impossible_counts_is_refused(tmp_path: Path, wrong: int) -> None:
+    file = tmp_path / "proof.json"
+    file.write_text(json.dumps({"rows": [{"kind": "gold", "operator": "none", "trials": 9, "wrong": wrong}]}))
+    with pytest.raises(ArgumentError, match="is not the JSON of a proof"):
+        load_proof(file)
 
 
 @pytest.mark.parametrize("column", [9, 13])

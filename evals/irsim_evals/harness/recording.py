@@ -19,8 +19,9 @@ from typing import Any, Literal
 from pydantic import ValidationError
 
 import irsim
+from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError, PickledWhole
-from irsim_evals.cases.store import Instance, case_of, given_pictures
+from irsim_evals.cases.store import Instance, all_case_ids, case_of, given_pictures
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.limited import grade_answer
@@ -202,16 +203,28 @@ def grade_recording(recording: Recording, instances: Sequence[Instance] | None =
         instances: Those to grade; default: all of the recording.
 
     Raises:
-        ArgumentError: A case has changed, or an instance was not recorded.
+        ArgumentError: A case has changed or is not known, or an instance was not recorded.
     """
     if instances is None:
         keys = dict.fromkeys((attempt.case, attempt.instance) for attempt in recording.attempts)
-        instances = [case_of(case, int(instance) if instance else None) for case, instance in keys]
+        instances = [_named(case, instance) for case, instance in keys]
     return [
         _graded(attempt, instance, recording.header)
         for instance, attempts in matched(recording, instances)
         for attempt in attempts
     ]
+
+
+def _named(case: str, instance: str) -> Instance:
+    """The instance that a recording names."""
+    fix = "list the cases with irsim-evals cases, or record again"
+    if case not in all_case_ids():
+        raise ArgumentError(f"the recording has an attempt at '{clean(case, 60)}', and no case has that name", fix)
+    try:
+        return case_of(case, int(instance) if instance else None)
+    except ValueError:
+        what = f"the recording has an attempt at the instance '{clean(instance, 60)}' of {case}, which is no seed"
+        raise ArgumentError(what, fix) from None
 
 
 def matched(recording: Recording, instances: Iterable[Instance]) -> Iterator[tuple[Instance, list[Attempt]]]:

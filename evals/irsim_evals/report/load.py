@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
@@ -27,13 +27,22 @@ _EPISODE_S = 10.0
 """Length of the episode that is drawn where a case has no episodes [s]."""
 
 
+Count = Annotated[int, Field(ge=0, le=10**12)]
+
+
 class ProofRow(BaseModel):
     """One kind and operator of the proof."""
 
     kind: str
     operator: str
-    trials: int
-    wrong: int
+    trials: Count
+    wrong: Count
+
+    @model_validator(mode="after")
+    def _check_share(self) -> ProofRow:
+        if self.wrong > self.trials:
+            raise ValueError(f"{self.wrong} of {self.trials} trials cannot be wrong")
+        return self
 
 
 class Proof(BaseModel):
@@ -43,7 +52,7 @@ class Proof(BaseModel):
 
     rows: list[ProofRow]
     wrong: list[dict[str, Any]] = []
-    left_out: dict[str, int] = {}
+    left_out: dict[str, Count] = {}
     seconds: float = 0.0
 
     def totals(self) -> list[tuple[str, int, Interval]]:

@@ -100,7 +100,8 @@ def _extent(outlines: Outlines, solid: Any, options: ImportOptions) -> tuple[Any
 def _opened(region: Any, width: float) -> Any:
     """The part of an area that is at least as wide as that [m]."""
     half = 0.499 * width
-    return region.buffer(-half, join_style="mitre").buffer(half, join_style="mitre").buffer(1e-9)
+    with np.errstate(invalid="ignore"):  # corners that lie in one point
+        return region.buffer(-half, join_style="mitre").buffer(half, join_style="mitre").buffer(1e-9)
 
 
 def _thin_walls(solid: Any, side: float) -> list[Any]:

@@ -83,6 +83,17 @@ def test_a_recording_of_another_prompt_is_refused(recording: Recording) -> None:
         grade_recording(recording)
 
 
+@pytest.mark.parametrize(
+    ("case", "instance", "message"), [("no-case", "4", "no case has that name"), ("pub-01", "four", "which is no seed")]
+)
+def test_a_recording_of_an_unknown_instance_is_refused(
+    recording: Recording, case: str, instance: str, message: str
+) -> None:
+    recording.attempts[0] = recording.attempts[0].model_copy(update={"case": case, "instance": instance})
+    with pytest.raises(ArgumentError, match=message):
+        grade_recording(recording)
+
+
 @pytest.mark.parametrize("text", ["", "no json\n", '{"kind": "header"}\n', "[]\n"])
 def test_other_files_are_no_recordings(text: str, tmp_path: Path) -> None:
     path = tmp_path / "other.jsonl"
