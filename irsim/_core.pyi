@@ -418,14 +418,23 @@ class OccupancyGrid:
         occupied: (nx, ny), i along +x, j along +y; non-zero where occupied.
         origin: Lower left corner, world frame [m].
         cell: Extent of a cell along x and y [m].
+        unknown: (nx, ny) non-zero where unknown; occupied cells are known. None if all are known.
     """
 
-    def __init__(self, occupied: NDArray[np.uint8], origin: Sequence[float], cell: Sequence[float]) -> None: ...
+    def __init__(
+        self,
+        occupied: NDArray[np.uint8],
+        origin: Sequence[float],
+        cell: Sequence[float],
+        unknown: NDArray[np.uint8] | None = None,
+    ) -> None: ...
     shape: tuple[int, int]  # (nx, ny)
     origin: tuple[float, float]
     cell: tuple[float, float]
     count: int  # number of occupied cells
+    closed_count: int  # number of occupied and of unknown cells, which planners avoid
     occupied: Flags  # (nx, ny), a copy
+    unknown: Flags | None  # (nx, ny), a copy; None if all cells are known
     clearance: Flags  # (nx, ny) steps to any of 8 neighbors up to the nearest occupied cell, at most 255; a copy
     def outline(self) -> list[Floats]:
         """Rings around the occupied cells, (K, 2) corners each, with the occupied side on the left."""

@@ -346,7 +346,7 @@ class WorldView(_Clock):
 
     @property
     def grid_map(self) -> NDArray[np.float64] | None:
-        """Occupancies from 0 to 100, (nx, ny); None without a map."""
+        """Occupancies from 0 to 100, -1 where unknown, (nx, ny); None without a map."""
         return grid_values(self._simulation)
 
     @property

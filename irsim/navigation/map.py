@@ -11,6 +11,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 import irsim._core as core
+from irsim.components.maps._grid import with_unknown
 from irsim.components.maps._site import OCCUPIED
 from irsim.objects.shapely_geometry import body_parts, parts_of
 from irsim.objects.view import ObjectView
@@ -56,7 +57,8 @@ class Map:
         resolution: Cell size of grid planners if there is no grid [m].
         obstacle_list: Obstacles: objects of an environment, shapely geometries, or anything with an attribute
             ``geometry``. Objects that are ``unobstructed`` are ignored.
-        grid: (nx, ny) occupancy 0 to 100; cell [i, j] with i along +x and j along +y from the lower left corner.
+        grid: (nx, ny) occupancy 0 to 100, negative where unknown, which planners avoid; cell [i, j] with i along +x and
+            j along +y from the lower left corner.
         world_offset: Lower left corner [m].
 
     Attributes:
@@ -169,10 +171,10 @@ def world_map(
 
 
 def coarsen(grid: Any, columns: int, rows: int) -> Any:
-    """Merge cells to blocks, each with the largest value of its cells.
+    """Merge cells to blocks, each with the largest value of its cells; unknown without occupied and with unknown cells.
 
     Args:
-        grid: (nx, ny) values.
+        grid: (nx, ny) values, negative where unknown.
         columns: Number of blocks along x, at most nx.
         rows: Number of blocks along y, at most ny.
 
@@ -182,13 +184,15 @@ def coarsen(grid: Any, columns: int, rows: int) -> Any:
     values = np.asarray(grid)
     columns, rows = min(max(1, columns), values.shape[0]), min(max(1, rows), values.shape[1])
     # a cell counts for each block that it overlaps
+    most, least = values, values
     for axis, count in ((0, columns), (1, rows)):
         size = values.shape[axis]
         first = np.arange(count) * size // count
         last = -(-(np.arange(1, count + 1) * size) // count)
-        blocks = [np.take(values, range(a, b), axis=axis).max(axis=axis) for a, b in zip(first, last, strict=True)]
-        values = np.stack(blocks, axis=axis)
-    return values
+        blocks = [range(a, b) for a, b in zip(first, last, strict=True)]
+        most = np.stack([np.take(most, block, axis=axis).max(axis=axis) for block in blocks], axis=axis)
+        least = np.stack([np.take(least, block, axis=axis).min(axis=axis) for block in blocks], axis=axis)
+    return with_unknown(most, least)
 
 
 def terrain_of(env_map: Any) -> core.Terrain:
@@ -213,15 +217,17 @@ def terrain_of(env_map: Any) -> core.Terrain:
 
 
 def _grid_parts(env_map: Any) -> list[Any]:
-    """Return the grid as a list of one part of the core; an empty list without occupied cells."""
+    """Return the grid as a list of one part of the core; an empty list without occupied or unknown cells."""
     if env_map.grid is None:
         return []
     origin, cell, _, _ = cells_of(env_map)
     kept = getattr(env_map, "_cells", None)
     if kept is not None and (kept[1].origin, kept[1].cell) == (origin, cell) and np.array_equal(kept[0], env_map.grid):
-        return [core.GridCells(grid=kept[1])] if kept[1].count else []
-    occupied = np.ascontiguousarray(np.asarray(env_map.grid) > OCCUPIED, dtype=np.uint8)
-    return [core.GridCells(grid=core.OccupancyGrid(occupied, origin, cell))] if occupied.any() else []
+        return [core.GridCells(grid=kept[1])] if kept[1].closed_count else []
+    values = np.asarray(env_map.grid)
+    occupied, unknown = (np.ascontiguousarray(chosen, dtype=np.uint8) for chosen in (values > OCCUPIED, values < 0))
+    cells = core.OccupancyGrid(occupied, origin, cell, unknown)
+    return [core.GridCells(grid=cells)] if cells.closed_count else []
 
 
 Cells = tuple[tuple[float, float], tuple[float, float], int, int]

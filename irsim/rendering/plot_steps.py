@@ -7,9 +7,9 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from matplotlib.axes import Axes
 
+from irsim.components.maps._grid import shades
 from irsim.graphics.figure import window
 from irsim.graphics.figure.layers import FogLayer, GridLayer
 from irsim.graphics.scene.scene import Fog, GridImage, Scene
@@ -150,13 +150,14 @@ class PlotSteps:
         """Draw an additional map over the whole world.
 
         Args:
-            grid_map: (nx, ny) occupancy, 0 to 100. None stands for the map of the environment, which is drawn anyway.
+            grid_map: (nx, ny) occupancy, 0 to 100, negative where unknown. None stands for the map of the environment,
+                which is drawn anyway.
             **kwargs: Properties of the image: ``alpha``, ``cmap``, ``zorder``, …
         """
         if grid_map is None:
             self.synced_figure()
             return
-        levels = np.clip(np.asarray(grid_map), 0, 100).astype(np.uint8)
+        levels = shades(grid_map)
         layer = GridLayer(self.ax, 0.0)
         layer.show(GridImage(-1, levels, (*self.x_range, *self.y_range), 0.0))  # type: ignore[arg-type]
         layer.artist.set(**kwargs)

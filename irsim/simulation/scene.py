@@ -127,13 +127,18 @@ class Grid:
         occupied: (nx, ny) cells that are solid; the first index goes along x, the second one along y, upwards.
         cell: Sides of a cell along x and y [m].
         origin: Lower left corner [m], world frame.
-        levels: (nx, ny) occupancies from 0 to 100; None in scenes of other programs.
+        levels: (nx, ny) occupancies from 0 to 100, -1 where unknown; None in scenes of other programs.
     """
 
     occupied: NDArray[np.bool_]
     cell: tuple[float, float]
     origin: tuple[float, float]
-    levels: NDArray[np.uint8] | None = None
+    levels: NDArray[np.int8] | None = None
+
+    @property
+    def unknown(self) -> NDArray[np.bool_]:
+        """(nx, ny) cells of which the map does not say whether they are solid, and that count as neither."""
+        return np.zeros(self.occupied.shape, dtype=bool) if self.levels is None else self.levels < 0
 
     @property
     def extent(self) -> tuple[float, float, float, float]:

@@ -88,7 +88,7 @@ def test_round_trip(seed, mode, negate, thresholds) -> None:
 
 def test_the_world_takes_its_extent_from_the_map(tmp_path) -> None:
     write(tmp_path, corner())
-    reading = read(world_of(tmp_path))
+    reading = read(world_of(tmp_path, more=", unknown: free"))
     world, grid = reading.scenario.world, reading.scenario.grid
     assert reading.diagnostics == []
     assert (world.width, world.height, world.offset) == (3.0, 2.0, [-1.0, 2.0])

@@ -298,7 +298,7 @@ class Outgoing:
         grid = self.scene.grid
         if grid is None or abs(grid.cell[1] / grid.cell[0] - 1) > _MAX_ASPECT_ERROR:
             return None
-        levels = np.where(grid.occupied, 100, 0).astype(np.int8)
+        levels = np.where(grid.occupied, 100, np.where(grid.unknown, -1, 0)).astype(np.int8)
         return self.messages.grid(stamp, self.frame, grid.cell[0], grid.origin, levels)
 
     def _markers(self, stamp: int) -> Any:

@@ -52,7 +52,7 @@ class ObstacleMap(ScriptObject):
 
     @property
     def grid_map(self) -> Floats:
-        """Occupancies (nx, ny), from 0 to 100; the first index counts along +x, the second along +y."""
+        """Occupancies (nx, ny), 0 to 100, -1 where unknown; the first index counts along +x, the second along +y."""
         values = grid_values(self._simulation, self.world)
         assert values is not None
         return values

@@ -7,12 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import irsim._core as core
-from irsim.components.maps._site import Noise, Raster
+from irsim.components.maps._site import OCCUPIED, UNKNOWN, UNKNOWN_AS, Noise, Raster
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from irsim.common.arrays import Floats
 
-__all__ = ["MapCells", "MapGrid", "Walls", "map_grid", "merged"]
+__all__ = ["MapCells", "MapGrid", "Walls", "map_grid", "merged", "shades", "with_unknown"]
 
 _MAX_CELLS_ALONG = 2**31 - 1
 """Largest number of cells along one side of a map."""
@@ -90,8 +93,13 @@ class MapGrid:
         """Number of occupied cells; -1 if it differs from scene to scene."""
         return self.cells.count if self.cells is not None else -1
 
+    @property
+    def has_unknown(self) -> bool:
+        """Whether planners avoid cells that are not occupied, because the map does not know them to be free."""
+        return self.cells is not None and self.cells.closed_count > self.cells.count
+
     def values(self) -> Floats:
-        """(nx, ny) occupancies, 0 to 100.
+        """(nx, ny) occupancies, 0 to 100, -1 where unknown.
 
         Raises:
             ValueError: They are drawn for each scene.
@@ -133,26 +141,53 @@ def map_grid(
         raster = Raster(merged(source.values(), downsample))
     nx, ny = raster.levels.shape
     cell = (width / nx, height / ny)
-    cells = core.OccupancyGrid(raster.occupied(), origin, cell)
+    cells = core.OccupancyGrid(raster.occupied(), origin, cell, raster.unknown())
     return MapGrid((nx, ny), cell, origin, core.GridCells(grid=cells), raster, cells)
 
 
 def merged(values: Floats, side: int) -> Floats:
     """Occupancies of blocks of cells, each with the largest of its cells, so that no wall is lost.
 
+    A block without occupied cells is unknown if one of its cells is.
+
     Args:
-        values: (nx, ny) occupancies.
+        values: (nx, ny) occupancies, negative where unknown.
         side: Cells along a side of a block; those at the upper ends have the cells that are left.
     """
     import numpy as np
 
+    least, most = values, values
     for axis in (0, 1):
-        values = np.maximum.reduceat(values, np.arange(0, values.shape[axis], side), axis=axis)
-    return values
+        first = np.arange(0, values.shape[axis], side)
+        most, least = np.maximum.reduceat(most, first, axis=axis), np.minimum.reduceat(least, first, axis=axis)
+    return with_unknown(most, least)
+
+
+def with_unknown(most: Floats, least: Floats) -> Floats:
+    """Occupancies of blocks of cells: occupied if one of the cells is, else unknown if one is, else the largest.
+
+    Args:
+        most: Largest occupancy of the cells of each block, negative where unknown.
+        least: Smallest one.
+    """
+    import numpy as np
+
+    return np.where((most <= OCCUPIED) & (least < 0), UNKNOWN, most) if (least < 0).any() else most
+
+
+def shades(values: Any) -> NDArray[np.uint8]:
+    """(nx, ny) occupancies, 0 to 100, by which pictures show a map: unknown cells are grey.
+
+    Args:
+        values: (nx, ny) occupancies, negative where unknown.
+    """
+    import numpy as np
+
+    return np.clip(np.where(np.asarray(values) < 0, UNKNOWN_AS["free"], values), 0, 100).astype(np.uint8)
 
 
 def _reduce_grid(grid: core.OccupancyGrid) -> tuple[Any, ...]:
-    return core.OccupancyGrid, (grid.occupied, grid.origin, grid.cell)
+    return core.OccupancyGrid, (grid.occupied, grid.origin, grid.cell, grid.unknown)
 
 
 def _reduce_part(part: Any) -> tuple[Any, ...]:

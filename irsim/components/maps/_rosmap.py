@@ -18,13 +18,13 @@ from irsim.common.arrays import Floats
 from irsim.common.records import ContentError, read_text
 from irsim.common.text import clean
 from irsim.common.yaml.plain import SMALL, read_plain_yaml
+from irsim.components.maps._grid import with_unknown
 from irsim.components.maps._picture import open_picture, upright
-from irsim.components.maps._site import OCCUPIED, MapProblem, MapSite, Raster, cells_along
+from irsim.components.maps._site import OCCUPIED, UNKNOWN, MapProblem, MapSite, Raster, cells_along
 
 __all__ = ["RosMeta", "find_picture", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
 
 MODES = ("trinary", "scale", "raw")
-UNKNOWN = -1.0
 _YAML = replace(SMALL, bytes=64 * 1024)
 """Limits of the YAML file of a map."""
 _NUMBER = re.compile(r"[-+]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|\.?(?:inf|nan))\Z", re.IGNORECASE)
@@ -180,7 +180,7 @@ def ros_raster(path: Path, name: str, site: MapSite, unknown: float) -> Raster:
         path: The YAML file.
         name: Name of the file in messages.
         site: The world, and where to look for files.
-        unknown: Occupancy of unknown cells.
+        unknown: Occupancy of unknown cells; negative if they stay unknown.
 
     Raises:
         MapProblem: The file or its picture cannot be used.
@@ -202,8 +202,9 @@ def ros_raster(path: Path, name: str, site: MapSite, unknown: float) -> Raster:
     height_fits = abs(wanted[1] - height) <= _EXTENT_TOLERANCE * height
     if not (aligned and width_fits and height_fits):
         values = _resample(values, meta, size, wanted, unknown)
-    values = np.where(values < 0, unknown, values)
-    return Raster(values, None, wanted[0], wanted[1], wanted[2])
+    missing = values < 0
+    values = np.where(missing, unknown, values)
+    return Raster(values, None, wanted[0], wanted[1], wanted[2], float(missing.mean()))
 
 
 def find_picture(image: str, path: Path, site: MapSite) -> Path:
@@ -252,10 +253,13 @@ def _resample(
     wanted: tuple[float, float, tuple[float, float]],
     unknown: float,
 ) -> Floats:
-    """Occupancy of each wanted cell: the highest of several samples of the picture, unknown outside of it."""
+    """Occupancy of each wanted cell: the highest of several samples of the picture, unknown outside of it.
+
+    Where unknown cells stay unknown, one unknown sample makes a cell unknown that is not occupied.
+    """
     (nx, ny), (x, y, yaw) = size, meta.origin
     c, s = math.cos(yaw), math.sin(yaw)
-    best = np.full(size, -math.inf)
+    best, least = np.full(size, -math.inf), np.full(size, math.inf)
     offsets = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
     for a in offsets:
         for b in offsets:
@@ -265,8 +269,9 @@ def _resample(
             j = np.floor((-s * px + c * py) / meta.resolution).astype(np.int64)
             known = (i >= 0) & (j >= 0) & (i < values.shape[0]) & (j < values.shape[1])
             sampled = values[np.where(known, i, 0), np.where(known, j, 0)]
-            best = np.maximum(best, np.where(known & (sampled >= 0), sampled, UNKNOWN))
-    return best
+            sampled = np.where(known & (sampled >= 0), sampled, UNKNOWN)
+            best, least = np.maximum(best, sampled), np.minimum(least, sampled)
+    return with_unknown(best, least) if unknown < 0 else best
 
 
 def _number(value: Any, name: str, key: str) -> float:

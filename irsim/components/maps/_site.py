@@ -14,6 +14,7 @@ from irsim.diagnostics.errors import PickledWhole
 
 __all__ = [
     "OCCUPIED",
+    "UNKNOWN",
     "UNKNOWN_AS",
     "MapProblem",
     "MapSite",
@@ -33,8 +34,10 @@ if TYPE_CHECKING:
 
 OCCUPIED = 50
 """Map cells with a larger occupancy, of 100, are occupied."""
-UNKNOWN_AS = {"free": 20.0, "occupied": 75.0}
-"""Occupancies of unknown cells that count as free or as occupied; pictures show them as grey."""
+UNKNOWN = -1.0
+"""Occupancy of unknown cells, as in maps of ROS: beams and bodies pass them, planners and random places avoid them."""
+UNKNOWN_AS = {"free": 20.0, "occupied": 75.0, "unknown": UNKNOWN}
+"""Occupancies of cells whose occupancy the map does not give, by what they count as; pictures show them as grey."""
 _SLIP = 0.85
 """Similarity from which on a name is taken for a slip of the name of a bundled map, which shall not replace a plan."""
 _MAX_CELLS_ALONG = 1e15
@@ -74,10 +77,11 @@ class Raster:
     """Occupancies of the cells of a rectangle.
 
     Attributes:
-        levels: (nx, ny) one number per cell, i along +x, j along +y.
+        levels: (nx, ny) one number per cell, i along +x, j along +y; negative where unknown.
         table: Occupancy (0 to 100) of each level; None if the levels are occupancies.
         width, height: Extent that the source prescribes [m]; None if it prescribes none.
         origin: Lower left corner that the source prescribes [m]; None if it prescribes none.
+        unknown_share: Share of the cells whose occupancy the source does not give, whatever they count as.
     """
 
     levels: NDArray[Any]
@@ -85,9 +89,10 @@ class Raster:
     width: float | None = None
     height: float | None = None
     origin: tuple[float, float] | None = None
+    unknown_share: float = 0.0
 
     def values(self) -> Floats:
-        """(nx, ny) occupancies, 0 to 100."""
+        """(nx, ny) occupancies, 0 to 100, -1 where unknown."""
         import numpy as np
 
         return np.asarray(self.levels if self.table is None else np.take(self.table, self.levels), dtype=np.float64)
@@ -98,6 +103,13 @@ class Raster:
 
         full = self.levels > OCCUPIED if self.table is None else (self.table > OCCUPIED)[self.levels]
         return np.ascontiguousarray(full, dtype=np.uint8)
+
+    def unknown(self) -> NDArray[np.uint8] | None:
+        """(nx, ny) 1 where the occupancy is unknown; None if all cells are known."""
+        import numpy as np
+
+        negative = self.table is None and self.levels < 0
+        return np.ascontiguousarray(negative, dtype=np.uint8) if np.any(negative) else None
 
 
 @dataclass

@@ -22,8 +22,13 @@ class RosMap(MapOptions):
     name: Literal["ros"] = "ros"
     path: Annotated[str, Field(strict=True, min_length=1)]
     """YAML file of the map."""
-    unknown: Literal["free", "occupied"] = "free"
-    """Whether cells that are neither free nor occupied count as free or occupied. Pictures show them in grey."""
+    unknown: Literal["free", "occupied", "unknown"] = "free"
+    """What cells are that are neither free nor occupied; pictures show them in grey. ``unknown``: beams, sight and
+    bodies pass through them, while planners, ``follow`` and random starts and goals keep out."""
+
+
+_SAID = 0.005
+"""Share of unknown cells from which on the user hears what they count as."""
 
 
 @MAPS.register(RosMap)
@@ -36,4 +41,8 @@ def ros(options: RosMap, site: MapSite) -> Raster:
     from irsim.components.maps._rosmap import ros_raster
 
     path = site.find(options.path)
-    return ros_raster(path, options.path, site, UNKNOWN_AS[options.unknown])
+    raster = ros_raster(path, options.path, site, UNKNOWN_AS[options.unknown])
+    if raster.unknown_share > _SAID and "unknown" not in options.model_fields_set:
+        said = f"{raster.unknown_share:.0%} of its cells are unknown and count as free"
+        site.notes.append(("map-read-as", f"{said}: write 'unknown: free', 'unknown: occupied' or 'unknown: unknown'"))
+    return raster

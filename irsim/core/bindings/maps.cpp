@@ -12,23 +12,31 @@ using Occupied = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::
 using Two = std::array<double, 2>;
 
 /// Python hands over an (nx, ny) array with i along x, while the core stores rows along x.
-std::shared_ptr<OccupancyGrid> make_grid(const Occupied& occupied, const Two& origin, const Two& cell) {
-  const std::size_t nx = occupied.shape(0), ny = occupied.shape(1);
+std::vector<std::uint8_t> by_row(const Occupied& flags) {
+  const std::size_t nx = flags.shape(0), ny = flags.shape(1);
   std::vector<std::uint8_t> rows(nx * ny);
   for (std::size_t i = 0; i < nx; ++i)
-    for (std::size_t j = 0; j < ny; ++j) rows[j * nx + i] = occupied.data()[i * ny + j];
-  return std::make_shared<OccupancyGrid>(static_cast<int>(nx), static_cast<int>(ny), Vec2{origin[0], origin[1]},
-                                         Vec2{cell[0], cell[1]}, rows);
+    for (std::size_t j = 0; j < ny; ++j) rows[j * nx + i] = flags.data()[i * ny + j];
+  return rows;
 }
 
-nb::object by_column(const OccupancyGrid& grid, bool clearance) {
+OccupancyGrid make_grid(const Occupied& occupied, const Two& origin, const Two& cell,
+                        const std::optional<Occupied>& unknown) {
+  const std::size_t nx = occupied.shape(0), ny = occupied.shape(1);
+  if (unknown && (unknown->shape(0) != nx || unknown->shape(1) != ny))
+    throw nb::value_error("occupied and unknown cells must have the same shape");
+  return {static_cast<int>(nx), static_cast<int>(ny), {origin[0], origin[1]},
+          {cell[0], cell[1]},   by_row(occupied),     unknown ? by_row(*unknown) : std::vector<std::uint8_t>()};
+}
+
+/// (nx, ny) `value` of each cell.
+template <class Value>
+nb::object by_column(const OccupancyGrid& grid, Value&& value) {
   const std::size_t nx = grid.columns(), ny = grid.rows();
   std::vector<std::uint8_t> out(nx * ny);
   for (std::size_t i = 0; i < nx; ++i)
-    for (std::size_t j = 0; j < ny; ++j) {
-      const int c = grid.clearance(static_cast<int>(i), static_cast<int>(j));
-      out[i * ny + j] = static_cast<std::uint8_t>(clearance ? c : c == 0);
-    }
+    for (std::size_t j = 0; j < ny; ++j)
+      out[i * ny + j] = static_cast<std::uint8_t>(value(static_cast<int>(i), static_cast<int>(j)));
   return own(std::move(out), {nx, ny});
 }
 
@@ -62,16 +70,26 @@ void bind_maps(nb::module_& m) {
   nb::class_<OccupancyGrid>(m, "OccupancyGrid")
       .def(
           "__init__",
-          [](OccupancyGrid* self, const Occupied& occupied, const Two& origin, const Two& cell) {
-            new (self) OccupancyGrid(std::move(*make_grid(occupied, origin, cell)));
+          [](OccupancyGrid* self, const Occupied& occupied, const Two& origin, const Two& cell,
+             const std::optional<Occupied>& unknown) {
+            new (self) OccupancyGrid(make_grid(occupied, origin, cell, unknown));
           },
-          nb::arg("occupied"), nb::arg("origin"), nb::arg("cell"))
+          nb::arg("occupied"), nb::arg("origin"), nb::arg("cell"), nb::arg("unknown") = nb::none())
       .def_prop_ro("shape", [](const OccupancyGrid& g) { return std::make_tuple(g.columns(), g.rows()); })
       .def_prop_ro("origin", [](const OccupancyGrid& g) { return std::make_tuple(g.origin().x, g.origin().y); })
       .def_prop_ro("cell", [](const OccupancyGrid& g) { return std::make_tuple(g.cell().x, g.cell().y); })
       .def_prop_ro("count", &OccupancyGrid::count)
-      .def_prop_ro("occupied", [](const OccupancyGrid& g) { return by_column(g, false); })
-      .def_prop_ro("clearance", [](const OccupancyGrid& g) { return by_column(g, true); })
+      .def_prop_ro("occupied",
+                   [](const OccupancyGrid& g) { return by_column(g, [&](int i, int j) { return g.occupied(i, j); }); })
+      .def_prop_ro("clearance",
+                   [](const OccupancyGrid& g) { return by_column(g, [&](int i, int j) { return g.clearance(i, j); }); })
+      .def_prop_ro("unknown",
+                   [](const OccupancyGrid& g) {
+                     return g.closed() == nullptr ? nb::none()
+                                                  : by_column(g, [&](int i, int j) { return g.unknown(i, j); });
+                   })
+      .def_prop_ro("closed_count",
+                   [](const OccupancyGrid& g) { return g.closed() == nullptr ? g.count() : g.closed()->count(); })
       .def("outline", &outline_rings)
       .def(
           "cast",

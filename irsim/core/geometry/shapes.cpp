@@ -1,5 +1,7 @@
 #include "geometry/shapes.hpp"
 
+#include <algorithm>
+
 #include "geometry/enclosing_circle.hpp"
 
 namespace irsim {
@@ -102,6 +104,25 @@ std::shared_ptr<const Shapes> Shapes::scaled(const double* factors) const {
     out->centroid[i] = centroid[i] * factor;
     out->radius[i] *= factor;
     out->arm[i] = out->arm_of(i);
+  }
+  return out;
+}
+
+std::shared_ptr<const Shapes> Shapes::closed() const {
+  const auto has_unknown = [&](int i) { return is_map(i) && parts[body[i].part].cells->closed() != nullptr; };
+  int first = 0;
+  while (first < objects() && !has_unknown(first)) ++first;
+  if (first == objects()) return nullptr;
+  auto out = std::make_shared<Shapes>(*this);
+  for (int i = first; i < objects(); ++i) {
+    if (!has_unknown(i)) continue;
+    Shapes one;
+    one.add({cells_outline(parts[body[i].part].cells->closed())}, true);
+    out->parts[body[i].part] = one.parts[0];
+    std::copy(one.vertices.begin(), one.vertices.end(), out->vertices.begin() + body[i].vertex);
+    out->centre[i] = one.centre[0], out->centroid[i] = one.centroid[0];
+    out->radius[i] = one.radius[0], out->arm[i] = one.arm[0];
+    out->grids.push_back(one.grids[0]);
   }
   return out;
 }

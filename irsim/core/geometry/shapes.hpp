@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "geometry/vec.hpp"
@@ -26,6 +27,16 @@ struct Outline {
   double radius = 0.0;
   std::shared_ptr<const OccupancyGrid> cells = nullptr;
 };
+
+/// A part made of cells; its vertices are the corners of the box around them.
+inline Outline cells_outline(std::shared_ptr<const OccupancyGrid> grid) {
+  const Box& box = grid->bounds();
+  return {Kind::cells, {{box.x0, box.y0}, {box.x1, box.y1}}, 0.0, std::move(grid)};
+}
+/// The part as planners see it, for whom unknown cells of a map are occupied.
+inline Outline closed_outline(const Outline& part) {
+  return part.cells != nullptr && part.cells->closed() != nullptr ? cells_outline(part.cells->closed()) : part;
+}
 
 /// Whether a shape is drawn for each scene; random shapes overload this function.
 template <class Shape>
@@ -74,6 +85,8 @@ struct Shapes {
   /// The same shapes, each scaled about the origin of its body frame by its entry of (N,) factors; maps stay as they
   /// are.
   std::shared_ptr<const Shapes> scaled(const double* factors) const;
+  /// The same shapes as planners see them, for whom unknown cells of maps are occupied; null if all cells are known.
+  std::shared_ptr<const Shapes> closed() const;
   double scale_of(int object) const { return scale.empty() ? 1.0 : scale[object]; }
 
  private:

@@ -20,7 +20,8 @@ struct Run {
 
 }  // namespace
 
-OccupancyGrid::OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, const std::vector<std::uint8_t>& occupied)
+OccupancyGrid::OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, const std::vector<std::uint8_t>& occupied,
+                             const std::vector<std::uint8_t>& unknown)
     : columns_(columns), rows_(rows), origin_(origin), cell_(cell) {
   const std::size_t cells =
       static_cast<std::size_t>(std::max(columns, 0)) * static_cast<std::size_t>(std::max(rows, 0));
@@ -60,6 +61,13 @@ OccupancyGrid::OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, cons
       right_ahead = right, left_ahead = left;
     }
   }
+  if (unknown.size() != cells) return;
+  std::vector<std::uint8_t> closed = occupied;
+  bool all_known = true;
+  for (std::size_t k = 0; k < cells; ++k) {
+    if (unknown[k] != 0 && occupied[k] == 0) closed[k] = 1, all_known = false;
+  }
+  if (!all_known) closed_ = std::make_shared<const OccupancyGrid>(columns, rows, origin, cell, closed);
 }
 
 bool OccupancyGrid::on_outline(int i, int j) const {

@@ -1,10 +1,11 @@
-// Occupancy grids: maps of square or oblong cells, some of them occupied.
+// Occupancy grids: maps of square or oblong cells, some of them occupied, some of them perhaps unknown.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 #include "geometry/vec.hpp"
@@ -12,11 +13,13 @@
 namespace irsim {
 
 /// Occupied cells are closed boxes. Cell (i, j), i along x, lies between corners (i, j) and (i + 1, j + 1). A grid
-/// never changes, so all worlds that have the map share it. It takes four bytes per cell.
+/// never changes, so all worlds that have the map share it. It takes four bytes per cell. Beams, sight and bodies pass
+/// through unknown cells; planners and random places avoid them, as they use `closed`.
 class OccupancyGrid {
  public:
-  /// `occupied`: (columns * rows,) row by row from the lowest, non-zero where occupied.
-  OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, const std::vector<std::uint8_t>& occupied);
+  /// `occupied`: (columns * rows,) row by row from the lowest, non-zero where occupied; `unknown`: likewise, or empty.
+  OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, const std::vector<std::uint8_t>& occupied,
+                const std::vector<std::uint8_t>& unknown = {});
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
@@ -30,6 +33,13 @@ class OccupancyGrid {
   /// The box around all occupied cells; not finite if no cell is occupied.
   const Box& bounds() const { return bounds_; }
   std::int64_t count() const { return count_; }
+  /// The grid in which unknown cells are occupied, too; null if all cells are known.
+  const std::shared_ptr<const OccupancyGrid>& closed() const { return closed_; }
+  bool unknown(int i, int j) const { return closed_ != nullptr && closed_->occupied(i, j) && !occupied(i, j); }
+  /// Whether a box may meet an unknown cell.
+  bool any_unknown(const Box& area) const {
+    return closed_ != nullptr && closed_->any_in(area, [this](int i, int j) { return !occupied(i, j); });
+  }
 
   /// Distance to the nearest occupied cell in steps to any of the 8 neighbors: 0 is occupied, 255 is far.
   int clearance(int i, int j) const {
@@ -86,6 +96,7 @@ class OccupancyGrid {
   Box bounds_;
   std::int64_t count_ = 0;
   std::array<std::vector<std::uint8_t>, 4> free_;  // sides of free squares, one array per direction
+  std::shared_ptr<const OccupancyGrid> closed_;
 };
 
 /// Whether a closed disc meets an occupied cell; if so, `where` is the point of such a cell nearest to the centre.

@@ -32,7 +32,9 @@ double Blockers::gap(const Footprint& body, double most) const {
 }
 
 void Terrain::add(const std::vector<Outline>& outlines, const Pose& pose) {
-  shapes_.add(outlines, false);
+  std::vector<Outline> closed;
+  for (const Outline& outline : outlines) closed.push_back(closed_outline(outline));
+  shapes_.add(closed, false);
   poses_.push_back(pose);
 }
 

@@ -28,7 +28,8 @@ struct Blockers {
 class Terrain {
  public:
   explicit Terrain(const Box& bounds) : bounds_(bounds) {}
-  /// Add outlines in the body frame at a pose. Queries are possible after `build`.
+  /// Add outlines in the body frame at a pose; unknown cells of maps are obstacles, too. Queries are possible after
+  /// `build`.
   void add(const std::vector<Outline>& outlines, const Pose& pose);
   void build();
 

@@ -26,7 +26,9 @@ class Follower {
         shapes_(*state.scenes[w].shapes),
         glides_(glides(world, state, row_, object)),
         reach_(sweeping_reach(shapes_, object)),
-        blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data(), nullptr} {
+        blockers_{fixed_.closed ? *fixed_.closed->shapes : shapes_,
+                  fixed_.closed ? fixed_.closed->outlines : fixed_.outlines,
+                  fixed_.closed ? fixed_.closed->grid : fixed_.grid, world.unobstructed.data(), nullptr} {
     if (!options_.within.empty()) within_.emplace(options_.within);
     collect_avoided();
   }

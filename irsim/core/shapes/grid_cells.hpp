@@ -13,12 +13,6 @@ struct GridCells {
   static constexpr auto fields() { return std::make_tuple(field("grid", &GridCells::grid)); }
 };
 
-/// A part made of cells; its vertices are the corners of the box around them.
-inline Outline cells_outline(std::shared_ptr<const OccupancyGrid> grid) {
-  const Box& box = grid->bounds();
-  return {Kind::cells, {{box.x0, box.y0}, {box.x1, box.y1}}, 0.0, std::move(grid)};
-}
-
 inline Outline outline(const GridCells& cells, const Draws&, std::uint64_t) { return cells_outline(cells.grid); }
 
 }  // namespace irsim

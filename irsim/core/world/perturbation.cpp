@@ -25,7 +25,8 @@ class Starts {
       : world_(world),
         state_(state),
         first_(w * world.objects),
-        shapes_(*state.scenes[w].shapes),
+        closed_(state.scenes[w].shapes->closed()),
+        shapes_(closed_ ? *closed_ : *state.scenes[w].shapes),
         written_(world, shapes_),
         placed_(world, shapes_),
         walls_(world, shapes_) {
@@ -96,6 +97,7 @@ class Starts {
   const World& world_;
   State& state_;
   int first_;
+  std::shared_ptr<const Shapes> closed_;  // null if all cells of maps are known
   const Shapes& shapes_;
   PlacedFootprints written_, placed_, walls_;
   std::vector<int> neighbors_;  // objects that overlap the present one in the scene as written

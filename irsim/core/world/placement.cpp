@@ -147,7 +147,8 @@ bool draw_pose(const RandomPlacement& entry, int attempts, const Draws& draws, s
 void place_randomly(const World& world, State& state, int w) {
   const int first = w * world.objects;
   const Key key = make_key(state.seed[w], state.scene_index[w], 0);
-  const Shapes& shapes = *state.scenes[w].shapes;
+  const auto closed = state.scenes[w].shapes->closed();
+  const Shapes& shapes = closed ? *closed : *state.scenes[w].shapes;
   const auto failed = [&](int object) {
     if (state.failed_placement[w] < 0) state.failed_placement[w] = object;
   };

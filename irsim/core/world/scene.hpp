@@ -19,17 +19,25 @@ namespace irsim {
 
 using Pair = std::pair<int, int>;  // object ids, first < second
 
+/// The static objects as planners see them, for whom unknown cells of maps are occupied.
+struct Closed {
+  std::shared_ptr<const Shapes> shapes;
+  Outlines outlines;
+  Grid grid;
+};
+
 /// Outlines of the static objects at their poses, and everything that can be computed from them once. Worlds whose
 /// static objects have the same shapes and poses share it.
 struct Fixed {
   std::vector<Pose> poses;  // poses of the static objects, in order
   Outlines outlines;
   Grid grid;
-  std::vector<Pair> pairs;    // static objects that touch each other
-  Walls walls;                // outlines of static objects other than circles
-  std::vector<int> disc_ids;  // ids of the circles
-  Points disc_points;         // centres of these circles
-  Obstacles obstacles;        // all of these in the form that `orca` needs
+  std::vector<Pair> pairs;               // static objects that touch each other
+  Walls walls;                           // outlines of static objects other than circles
+  std::vector<int> disc_ids;             // ids of the circles
+  Points disc_points;                    // centres of these circles
+  Obstacles obstacles;                   // all of these in the form that `orca` needs
+  std::unique_ptr<const Closed> closed;  // null if all cells of maps are known
 };
 
 enum class EventKind {

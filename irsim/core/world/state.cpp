@@ -52,6 +52,16 @@ void set_initial_values(const World& world, State& state, int w) {
   }
 }
 
+constexpr int kMaxWanderDraws = 1000;  // goals drawn until one lies in no unknown cell of a map
+
+/// Whether a body may meet unknown cells of a map at a place.
+bool may_meet_unknown(const World& world, const Shapes& shapes, int object, Vec2 place) {
+  return std::any_of(world.fixed_objects.begin(), world.fixed_objects.end(), [&](int i) {
+    return shapes.is_map(i) &&
+           shapes.parts[shapes.body[i].part].cells->any_unknown(box_around(place, shapes.radius[object]));
+  });
+}
+
 }  // namespace
 
 State::State(const World& world, const std::uint64_t* seeds, bool history_, bool drawn)
@@ -270,11 +280,16 @@ void refresh(const World& world, State& state) {
 void draw_wander_goal(const World& world, State& state, int w, int object) {
   const int row = w * world.objects + object;
   const Draws draws(state.key(w), Stream::goal, world.number[object]);
-  const std::uint64_t first = 3 * static_cast<std::uint64_t>(state.goal_draws[row]++);
   const World& from = variant_of(world, state, w);
   const Pose &low = from.range_low[object], &high = from.range_high[object];
-  state.goals[row].set({{draws.uniform(first, low.x, high.x), draws.uniform(first + 1, low.y, high.y),
-                         draws.uniform(first + 2, low.theta, high.theta)}});
+  Goal goal;
+  for (int attempt = 0; attempt < kMaxWanderDraws; ++attempt) {
+    const std::uint64_t first = 3 * static_cast<std::uint64_t>(state.goal_draws[row]++);
+    goal = {draws.uniform(first, low.x, high.x), draws.uniform(first + 1, low.y, high.y),
+            draws.uniform(first + 2, low.theta, high.theta)};
+    if (!may_meet_unknown(from, *state.scenes[w].shapes, object, goal.position())) break;
+  }
+  state.goals[row].set({goal});
   state.sync_goal(row);
 }
 

@@ -120,6 +120,19 @@ void check(const ObjectSpec& spec) {
   if (!(spec.mass > 0.0)) throw std::invalid_argument("mass must be positive");
 }
 
+/// Place the static objects at their poses, in outlines and in the grid that finds them.
+void place_all(const World& world, const Shapes& shapes, const std::vector<Pose>& poses, Outlines& outlines,
+               Grid& grid) {
+  outlines.resize(shapes.size[1]);
+  grid.clear(world.cell(shapes, world.fixed_objects));
+  for (std::size_t k = 0; k < world.fixed_objects.size(); ++k) {
+    const int i = world.fixed_objects[k];
+    outlines.place(shapes, i, poses[k], unit(poses[k].theta));
+    grid.add(i, outlines.boxes[shapes.placed[i].object]);
+  }
+  grid.build();
+}
+
 }  // namespace
 
 World::World(double step_time_, int collision_mode_, double gravity_, std::vector<ObjectSpec> specs_,
@@ -273,14 +286,13 @@ std::shared_ptr<const Shapes> make_shapes(const World& world, Key key) {
 std::shared_ptr<const Fixed> make_fixed(const World& world, const Shapes& shapes, std::vector<Pose> poses) {
   auto fixed = std::make_shared<Fixed>();
   fixed->poses = std::move(poses);
-  fixed->outlines.resize(shapes.size[1]);
-  fixed->grid.clear(world.cell(shapes, world.fixed_objects));
-  for (std::size_t k = 0; k < world.fixed_objects.size(); ++k) {
-    const int i = world.fixed_objects[k];
-    fixed->outlines.place(shapes, i, fixed->poses[k], unit(fixed->poses[k].theta));
-    fixed->grid.add(i, fixed->outlines.boxes[shapes.placed[i].object]);
+  place_all(world, shapes, fixed->poses, fixed->outlines, fixed->grid);
+  if (auto seen = shapes.closed()) {
+    auto closed = std::make_unique<Closed>();
+    closed->shapes = std::move(seen);
+    place_all(world, *closed->shapes, fixed->poses, closed->outlines, closed->grid);
+    fixed->closed = std::move(closed);
   }
-  fixed->grid.build();
   std::vector<Vec2> centres;
   for (const int i : world.fixed_objects) {
     const Footprint body = fixed->outlines.footprint(shapes, i);

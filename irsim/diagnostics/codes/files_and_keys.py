@@ -206,9 +206,13 @@ MAPS_AND_LIMITS: dict[str, Code] = {
     "map-empty": Code(
         "map without walls", "No cell is occupied, so there is no map object. Black is occupied, white is free."
     ),
-    "map-full": Code("map without free space", "Every cell is occupied. Black is occupied, white is free."),
+    "map-full": Code(
+        "map without free space",
+        "Every cell is occupied, or none is known to be free. Black is occupied, white is free.",
+    ),
     "map-values": Code(
-        "not an occupancy grid", "A map given as an array must have the shape (nx, ny) and numbers from 0 to 100."
+        "not an occupancy grid",
+        "A map given as an array must have the shape (nx, ny) and numbers from 0 to 100, or -1 for unknown cells.",
     ),
     "map-generator": Code(
         "map generator failed", "The Python class registered under this name raised an exception, or returned no grid."

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from irsim.common.arrays import Floats
+from irsim.components.maps._grid import shades
 from irsim.graphics.scene.bodies import Body, Pose, arrow, place, read_body
 from irsim.graphics.scene.scene import (
     Fog,
@@ -263,7 +264,7 @@ class SceneBuilder:
             assert grid is not None
             assert cells is not None
             drawn = grid.raster is None
-            levels = cells.occupied * np.uint8(100) if drawn else np.clip(grid.values(), 0, 100).astype(np.uint8)
+            levels = cells.occupied * np.uint8(100) if drawn else shades(grid.values())
             (x, y), (nx, ny), (dx, dy) = cells.origin, cells.shape, cells.cell
             self._grids[view.id] = GridImage(view.id, levels, (x, x + nx * dx, y, y + ny * dy), _GRID_ZORDER)
         return self._grids[view.id]

@@ -28,12 +28,14 @@ _HALVINGS = 12
 """Bisections of the depth of an overlap."""
 _RINGS = 30
 """Circles round an object on which a free place is searched."""
+FAR = (-1e8, -1e8, 1e8, 1e8)
+"""Bounds of a terrain that nothing leaves [m]."""
 _MIN_DEPTH = 1e-4
 """Smaller overlaps are invisible: the bodies touch [m]."""
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Report overlapping pairs with a robot or a moving object.
+    """Report overlapping pairs with a robot or a moving object, and starts in unknown cells of the map.
 
     Objects placed at random are skipped, as are pairs whose other object is ``unobstructed``.
     """
@@ -74,6 +76,37 @@ def check(context: Context) -> Iterator[Finding]:
             fix="move one of them, or make it smaller" + instead
             if other.path[0] != "world"
             else "start in free space" + instead,
+        )
+    yield from _check_unknown(context, bodies)
+
+
+def _check_unknown(context: Context, bodies: list[SizedBody]) -> Iterator[Finding]:
+    """Report what starts in unknown cells of the map, from where no planner finds a way."""
+    terrain = [body for body in bodies if body.record.is_map]
+    grid = context.resolved.grid
+    if grid is None or not grid.has_unknown or not terrain:
+        return
+    cells = core.Terrain(FAR, [(terrain[0].shape.parts, [0.0, 0.0, 0.0])])
+    known = set[Path]()
+    for body in bodies:
+        mover = body.record
+        where = context.entry_path(mover, "state") if context.is_given(mover, "state") else mover.path
+        if not _matters(mover) or mover.is_terrain or where in known or len(known) >= _MAX_REPORTED:
+            continue
+        pose = mover.state[:3]
+        if core.intersects(body.shape.parts, pose, terrain[0].shape.parts, [0.0, 0.0, 0.0]):
+            continue  # reported as a collision
+        if not cells.collides(body.shape.parts, pose):
+            continue
+        known.add(where)
+        plans = getattr(mover.behavior, "name", None) == "follow"
+        place = _free_place(context, body, bodies)
+        yield (warning if plans else hint)(
+            "initial-overlap",
+            where,
+            f"'{mover.name}' starts in an unknown part of the map, from where 'follow' finds no way",
+            fix="start where the map is free"
+            + ("" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"),
         )
 
 

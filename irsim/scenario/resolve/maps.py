@@ -163,7 +163,7 @@ def _check_occupancy(grid: MapGrid, world: WorldModel) -> list[Finding]:
     if grid.cells is None:
         return []
     total = grid.size[0] * grid.size[1]
-    if grid.cells.count == 0:
+    if grid.cells.closed_count == 0:
         return [
             warning(
                 "map-empty",
@@ -172,6 +172,9 @@ def _check_occupancy(grid: MapGrid, world: WorldModel) -> list[Finding]:
                 fix="black is occupied and white is free",
             )
         ]
+    if grid.cells.closed_count == total and grid.cells.count < total:
+        what = f"none of the {total:,} cells is known to be free: planners find no way"
+        return [warning("map-full", _PATH, what, fix="unknown: free")]
     if grid.cells.count == total:
         return [
             warning(

@@ -128,4 +128,5 @@ def _blocker(context: Context, scene: Scene, mover: Mover, goal: list[float], ra
         if core.intersects(parts, pose, disc, (goal[0], goal[1], 0.0)):
             kinds = {"map": "the map", "walls": "the wall around the world"}
             return kinds.get(record.shape.name, f"'{record.name}'")
-    return "an obstacle"
+    grid = context.resolved.grid
+    return "an unknown part of the map" if grid is not None and grid.has_unknown else "an obstacle"

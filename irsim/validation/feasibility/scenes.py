@@ -13,6 +13,7 @@ from irsim.common.outline import outline
 from irsim.components.maps._grid import MapCells, MapGrid, Walls
 from irsim.components.maps._site import Raster
 from irsim.scenario.checks import Context
+from irsim.scenario.checks.overlap import FAR
 from irsim.scenario.resolve.body_size import has_fixed_shape
 from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
@@ -20,8 +21,6 @@ from irsim.simulation.build import build_world
 
 __all__ = ["FAR", "Drawn", "Scene", "scenes_of"]
 
-FAR = (-1e8, -1e8, 1e8, 1e8)
-"""Bounds of a terrain that nothing leaves."""
 _MAX_SEEDS = 20
 """Number of seeds that are tried."""
 _MAX_PLACED_OBJECTS = 6_000

@@ -1,0 +1,199 @@
+"""Cells that a map leaves unknown: beams and bodies pass them, planners and random places keep out of them."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import irsim
+import irsim._core as core
+from irsim.api import validate
+from irsim.components.maps._grid import map_grid, merged
+from irsim.components.maps._site import Raster
+from irsim.navigation.geodesic import Geodesics
+from irsim.navigation.map import coarsen
+from irsim.scenario.read import read
+from irsim.simulation.simulation import Simulation
+
+STRIP = (4.0, 6.0)
+"""x of the unknown strip, which leaves open what lies above y = 8."""
+
+
+def write_map(folder: Path, robots: str = "", unknown: str | None = "unknown", world: str = "") -> Path:
+    """A world of 10 x 10 m: a wall at x > 9, and a strip of unknown cells from y = 0 to 8."""
+    grey = np.full((100, 100), 254, np.uint8)  # rows along y, downwards
+    grey[:, 90:] = 0
+    grey[20:, 40:60] = 205
+    Image.fromarray(grey).save(folder / "map.png")
+    (folder / "map.yaml").write_text("image: map.png\nresolution: 0.1\norigin: [0, 0, 0]\n")
+    option = "" if unknown is None else f", unknown: {unknown}"
+    file = folder / "world.yaml"
+    file.write_text(f"world: {{obstacle_map: {{name: ros, path: map.yaml{option}}}{world}}}\n{robots}")
+    return file
+
+
+def robot(behavior: str = "{name: dash}", start: str = "[2, 2]", goal: str = "[8, 2]", more: str = "") -> str:
+    return f"""robot:
+  - kinematics: {{name: omni}}
+    shape: {{name: circle, radius: 0.2}}
+    state: {start}
+    goal: {goal}
+    behavior: {behavior}
+{more}"""
+
+
+def test_cells_are_free_occupied_or_unknown_as_the_user_says(tmp_path) -> None:
+    cells = {
+        choice: read(write_map(tmp_path, unknown=choice)).scenario.grid.cells
+        for choice in ("free", "occupied", "unknown")
+    }
+    assert {name: (one.count, one.closed_count) for name, one in cells.items()} == {
+        "free": (1000, 1000),
+        "occupied": (2600, 2600),
+        "unknown": (1000, 2600),
+    }
+    assert cells["free"].unknown is None
+    unknown = np.zeros((100, 100), bool)
+    unknown[40:60, :80] = True
+    np.testing.assert_array_equal(cells["unknown"].unknown, unknown)
+    np.testing.assert_array_equal(irsim.make(write_map(tmp_path), display=False).get_map().grid < 0, unknown)
+
+
+def test_a_choice_that_is_not_made_is_said(tmp_path) -> None:
+    [note] = read(write_map(tmp_path, unknown=None)).diagnostics
+    assert (note.code, note.severity) == ("map-read-as", "hint")
+    assert "16% of its cells are unknown and count as free" in note.message
+    assert not read(write_map(tmp_path)).diagnostics
+
+
+@pytest.mark.parametrize(("unknown", "seen"), [("unknown", 7.0), ("free", 7.0), ("occupied", 2.0)])
+def test_beams_pass(tmp_path, unknown, seen) -> None:
+    more = "    sensors: [{name: lidar2d, number: 3, range_max: 20, angle_range: 1.0e-6}]\n"
+    env = irsim.make(write_map(tmp_path, robot("null", more=more), unknown), display=False)
+    env.step(np.zeros((2, 1)))
+    np.testing.assert_allclose(env.get_lidar_scan()["ranges"], seen, atol=1e-6)
+
+
+def test_sight_passes(tmp_path) -> None:
+    fov = "    fov: 1\n    fov_radius: 9\n"
+    robots = robot("null", more=fov) + "  - {kinematics: {name: omni}, state: [8, 2], goal: [8, 3]}\n"
+    seen = {}
+    for unknown in ("unknown", "occupied"):
+        env = irsim.make(write_map(tmp_path, robots, unknown), display=False)
+        seen[unknown] = env.robot_list[0].fov_detect_object(env.robot_list[1])
+    assert seen["unknown"]
+
+
+def test_bodies_drive_through(tmp_path) -> None:
+    env = irsim.make(write_map(tmp_path, robot(start="[3, 2]", goal="[7, 2]")), display=False)
+    for _ in range(100):
+        env.step()
+    assert env.robot.arrive
+    assert not env.robot.collision
+
+
+PLANNERS = ("astar", "jps", "rrt", "rrt_star", "informed_rrt_star", "prm")
+
+
+@pytest.mark.parametrize("planner", PLANNERS)
+def test_planners_go_round(tmp_path, planner) -> None:
+    file = write_map(tmp_path, robot(f"{{name: follow, planner: {planner}}}"), world=", time_limit: 60")
+    env = irsim.make(file, display=False, seed=3)
+    crossed = []
+    for _ in range(600):
+        env.step()
+        x, y = env.robot.state[:2, 0]
+        if STRIP[0] < x < STRIP[1]:
+            crossed.append(y)
+        if env.done():
+            break
+    assert env.robot.arrive
+    assert min(crossed) > 8.0 + 0.2 - 1e-6
+
+
+def test_planners_of_scripts_go_round(tmp_path) -> None:
+    from irsim.lib import AStarPlanner
+
+    env = irsim.make(write_map(tmp_path, robot()), display=False)
+    for resolution in (0.1, 0.35):  # the cells of the map, and blocks of them
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            path = AStarPlanner(env.get_map(resolution)).planning([2, 2], [8, 2], show_animation=False)
+        crossing = path[1][(path[0] > STRIP[0]) & (path[0] < STRIP[1])]
+        assert crossing.size
+        assert crossing.min() > 8.0
+
+
+def test_no_way_into_the_unknown(tmp_path) -> None:
+    file = write_map(tmp_path, robot("{name: follow}", goal="[5, 2]"))
+    env = irsim.make(file, display=False)
+    env.step()
+    assert [event.kind for event in env.events] == ["no_path"]
+
+
+def test_distances_along_ways_go_round(tmp_path) -> None:
+    simulation = Simulation(read(write_map(tmp_path, robot())).scenario, [0])
+    length = Geodesics(simulation).length(np.array([2.0, 2.0]), np.array([8.0, 2.0]), 0.2)
+    assert length > 2 * np.hypot(2.0, 6.0)
+    free = Simulation(read(write_map(tmp_path, robot(), "free")).scenario, [0])
+    assert Geodesics(free).length(np.array([2.0, 2.0]), np.array([8.0, 2.0]), 0.2) == pytest.approx(6.0)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_random_starts_and_goals_keep_out(tmp_path, seed) -> None:
+    crowd = """robot:
+  - number: 12
+    distribution: {name: random, range_low: [0, 0, 0], range_high: [9, 10, 6]}
+    kinematics: {name: omni}
+    shape: {name: circle, radius: 0.2}
+    behavior: {name: dash}
+obstacle:
+  - number: 4
+    distribution: {name: random, range_low: [0, 0, 0], range_high: [9, 10, 6]}
+    kinematics: {name: omni}
+    shape: {name: circle, radius: 0.2}
+    behavior: {name: dash, wander: true, range_low: [0, 0, -3], range_high: [9, 10, 3]}
+"""
+    env = irsim.make(write_map(tmp_path, crowd), display=False, seed=seed)
+    for _ in range(3):
+        places = [place for one in env.objects[:16] for place in (one.state[:2, 0], one.goal[:2, 0])]
+        for x, y in places:
+            assert np.hypot(max(STRIP[0] - x, x - STRIP[1], 0.0), max(y - 8.0, 0.0)) >= 0.2 - 1e-9
+        env.reset()
+
+
+def test_a_block_is_occupied_or_unknown_before_it_is_free() -> None:
+    values = np.array([[0.0, -1.0, 0.0, 0.0], [100.0, 0.0, -1.0, 0.0]])
+    np.testing.assert_array_equal(merged(values, 2), [[100.0, -1.0]])
+    np.testing.assert_array_equal(coarsen(values, 1, 2), [[100.0, -1.0]])
+    grid = map_grid(Raster(values), 4.0, 2.0, (0.0, 0.0), 2)
+    assert (grid.cells.count, grid.cells.closed_count) == (1, 2)
+
+
+def test_copies_keep_them() -> None:
+    cells = core.OccupancyGrid(np.zeros((3, 2), np.uint8), (0, 0), (1, 1), np.eye(3, 2, dtype=np.uint8))
+    for again in (pickle.loads(pickle.dumps(cells)), copy.deepcopy(cells)):
+        np.testing.assert_array_equal(again.unknown, np.eye(3, 2))
+    with pytest.raises(ValueError, match="same shape"):
+        core.OccupancyGrid(np.zeros((3, 2), np.uint8), (0, 0), (1, 1), np.zeros((2, 2), np.uint8))
+
+
+def findings(file: Path) -> dict[str, Any]:
+    return {one.code: one for one in validate(file).findings}
+
+
+def test_starts_and_goals_in_the_unknown_are_found(tmp_path) -> None:
+    goal = findings(write_map(tmp_path, robot("{name: follow}", goal="[5, 2]")))["goal-blocked"]
+    assert "inside an unknown part of the map" in goal.message
+    assert "is free" in goal.fix
+    start = findings(write_map(tmp_path, robot("{name: follow}", start="[5, 2]")))["initial-overlap"]
+    assert "starts in an unknown part of the map" in start.message
+    assert "is free" in start.fix
+    assert not {"goal-blocked", "initial-overlap"} & set(findings(write_map(tmp_path, robot("{name: follow}"))))
