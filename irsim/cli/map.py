@@ -130,6 +130,13 @@ def import_(
     height: Annotated[
         float | None, typer.Option(help="Height of the floor (m): the nearest level is taken.", show_default=False)
     ] = None,
+    ground: Annotated[
+        float | None,
+        typer.Option(
+            help="Height (m) of a flat ground that a mesh or a stage does not have; the robot is on it.",
+            show_default=False,
+        ),
+    ] = None,
     seed_point: Annotated[
         str | None,
         typer.Option(
@@ -223,6 +230,7 @@ def import_(
         "up": up.value,
         "level": level,
         "height": height,
+        "ground": ground,
         "seed_point": None if seed_point is None else _numbers(seed_point, "seed point", 2, "--seed-point 1.5,2"),
         "unknown": None if unknown is None else unknown.value,
         "meters_per_unit": meters_per_unit,

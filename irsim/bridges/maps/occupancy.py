@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.grid import SIDES, Bools, Grid, Ints, clipped, fitting_side, grid_over, side_notes
+from irsim.bridges.maps.grid import SIDES, Bools, Grid, Ints, Triangles, clipped, fitting_side, grid_over, side_notes
 from irsim.bridges.maps.regions import Level, find_levels
 from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Occupancy, Scene
 from irsim.bridges.maps.voxels import Spans, Surfaces, few_pieces, floors_of, spans_of, walkable_of
@@ -20,6 +20,8 @@ __all__ = ["cropped", "eroded", "occupancy_of", "within"]
 _UNITS = ", or its unit if that is not the meter: --meters-per-unit 0.001 for millimeters, 0.01 for centimeters"
 _MARGIN = 10
 """Cells that are kept around the free ones."""
+_BEYOND = 1.0
+"""Width of a ground around the scene that it is given to [m]."""
 COARSE, FINE = 0.25, 0.1
 """Sides of cells in which walls may hide rooms, and in which they do not [m]."""
 
@@ -34,6 +36,8 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
     climb = options.climb if scene.climb is None else scene.climb
     if options.bounds is not None:
         scene = _within_bounds(scene, options.bounds)
+    if options.ground is not None and len(scene.solid):
+        scene = replace(scene, solid=_with_ground(scene.solid, options.ground, options.bounds))
     parts = [part.reshape(-1, 3) for part in (scene.solid, scene.floors, scene.barred) if len(part)]
     if not parts:
         raise _empty("it has no triangles", "export the scene with its meshes")
@@ -55,6 +59,8 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
             what += f" in cells of {side:g} m, the smallest that fit over its {size[0]:,.0f} m x {size[1]:,.0f} m"
             raise _empty(what, f"give {hint.removeprefix(', ')}")
         fix = "check which axis points up (--up y or z), and the unit (--meters-per-unit); or try less --headroom"
+        if len(scene.solid) and options.ground is None:
+            fix += f"; --ground {scene.solid[..., 2].min():.3g} gives a floor to a scene that has none"
         raise _empty(what, fix)
     number = _chosen(levels, _at_seed(levels, surfaces, grid, options), options)
     level = levels[number]
@@ -81,6 +87,15 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
             f"--resolution {FINE:g}"
         )
     return cropped(result)
+
+
+def _with_ground(solid: Triangles, height: float, bounds: tuple[float, float, float, float] | None) -> Triangles:
+    """Triangles and a flat ground below all of them, or within bounds [m]."""
+    low, high = solid.min(axis=(0, 1))[:2] - _BEYOND, solid.max(axis=(0, 1))[:2] + _BEYOND
+    if bounds is not None:
+        low, high = np.array(bounds[:2]), np.array(bounds[2:])
+    corners = np.array([[*low, height], [high[0], low[1], height], [*high, height], [low[0], high[1], height]])
+    return np.concatenate([solid, corners[[[0, 1, 2], [0, 2, 3]]].astype(solid.dtype)])
 
 
 def _within_bounds(scene: Scene, bounds: tuple[float, float, float, float]) -> Scene:
@@ -123,8 +138,8 @@ def _chosen(levels: list[Level], candidates: list[int], options: ImportOptions) 
             what = f"there is no level {options.level}; levels are {listed}"
             raise BridgeError("bridge-file", what, "give one of them")
         return options.level
-    if options.height is not None:
-        wanted = options.height
+    wanted = options.ground if options.height is None else options.height
+    if wanted is not None:
         return min(range(len(levels)), key=lambda k: abs(levels[k].height - wanted))
     return max(candidates, key=lambda k: (not levels[k].roof, levels[k].areas[0]))
 

@@ -64,6 +64,9 @@ class ImportOptions(Options):
     """Number of the level, the lowest is 0. Default: the largest one that is not a roof of another."""
     height: Meters | None = None
     """Height of a floor along the upward axis: the nearest level is taken."""
+    ground: Meters | None = None
+    """Height of a flat ground along the upward axis that a mesh or a stage does not have, and that the robot is on.
+    Default: none."""
     seed_point: tuple[Meters, Meters] | None = None
     """x, y of a place that is free: what is connected to it is free in the map. Default: the largest connected part."""
     unknown: Literal["free", "occupied"] | None = None

@@ -56,6 +56,19 @@ def test_headroom_and_climb_decide() -> None:
     assert at(occupancy(flat(), climb=0.01), 3.0, 3.4) != FREE  # and one that the rug stops
 
 
+def test_a_scene_without_a_floor_gets_a_ground() -> None:
+    """Posts without anything below them, as in files of furniture; the ground is 1 m wider than they are."""
+    posts = np.concatenate([box([3.0 * k, 0, 0.5], [3.0 * k + 0.4, 0.4, 1.5]) for k in range(4)])
+    with pytest.raises(BridgeError, match=r"--ground 0\.5 gives a floor"):
+        occupancy(posts)
+    result = occupancy(posts, ground=0.5, resolution=0.05)
+    assert result.height == pytest.approx(0.5, abs=0.01)
+    assert area(result) == pytest.approx(11.4 * 2.4 - 4 * 0.4**2, rel=0.02)
+    assert [at(result, x, 0.2) for x in (0.2, 1.5, 3.2, 9.2)] == [OCCUPIED, FREE, OCCUPIED, OCCUPIED]
+    part = occupancy(posts, ground=0.0, bounds=(2.0, -2.0, 5.0, 2.0), resolution=0.05)
+    assert (part.height, area(part)) == (pytest.approx(0, abs=0.01), pytest.approx(3 * 4 - 0.4**2, rel=0.03))
+
+
 def test_levels_of_a_house() -> None:
     ground = occupancy(house())
     assert [round(height, 1) for height, _, _ in ground.levels] == [0.0, 2.8, 5.6]

@@ -89,6 +89,18 @@ KIND = Kind(
     suffixes=(),
     accepts=lambda head: False,  # it is known by its root element
     read=read,
-    unused=("headroom", "slope", "climb", "up", "level", "height", "meters_per_unit", "opacity", "lanes", "root"),
+    unused=(
+        "headroom",
+        "slope",
+        "ground",
+        "climb",
+        "up",
+        "level",
+        "height",
+        "meters_per_unit",
+        "opacity",
+        "lanes",
+        "root",
+    ),
     roots=("commonRoad",),
 )

@@ -118,6 +118,18 @@ KIND = Kind(
     accepts=lambda head: False,  # it is known by its root element
     read=read,
     unknown="free",
-    unused=("headroom", "slope", "climb", "up", "level", "height", "meters_per_unit", "opacity", "lanes", "root"),
+    unused=(
+        "headroom",
+        "slope",
+        "ground",
+        "climb",
+        "up",
+        "level",
+        "height",
+        "meters_per_unit",
+        "opacity",
+        "lanes",
+        "root",
+    ),
     roots=("osm",),
 )

@@ -66,6 +66,7 @@ KIND = Kind(
         "resolution",
         "headroom",
         "slope",
+        "ground",
         "climb",
         "up",
         "level",

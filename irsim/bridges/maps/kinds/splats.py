@@ -133,5 +133,5 @@ KIND = Kind(
     suffixes=(".ply",),
     accepts=_may_be_splats,
     read=read,
-    unused=("slope", "lanes", "root"),
+    unused=("slope", "ground", "lanes", "root"),
 )

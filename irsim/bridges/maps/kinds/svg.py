@@ -81,7 +81,7 @@ KIND = Kind(
     unknown="free",
     extra="plans",
     libraries=("svgelements",),
-    unused=("headroom", "slope", "climb", "up", "level", "height", "opacity", "lanes", "root"),
+    unused=("headroom", "slope", "ground", "climb", "up", "level", "height", "opacity", "lanes", "root"),
     roots=("svg",),
     layered=True,
 )

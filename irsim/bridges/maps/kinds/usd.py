@@ -51,8 +51,9 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene | Ou
     outlines = None if answer["own"] is None else _outlines(triangles, answer["own"], options)
     if outlines is None or not outlines.things:
         return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"])
-    if options.level is not None:
-        raise unusable(path, "irsim wrote it, and it has one floor, the ground", "leave out --level")
+    given = next((name for name in ("level", "ground") if getattr(options, name) is not None), None)
+    if given is not None:
+        raise unusable(path, "irsim wrote it, and it has one floor, the ground", f"leave out --{given}")
     outlines.frame, outlines.meters_per_unit = frame, scale
     outlines.notes += answer["notes"]
     return outlines
