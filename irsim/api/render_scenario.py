@@ -114,12 +114,12 @@ def render(
         env._env_plot.set_region(region)
     if size is not None:
         env._env_plot.set_size(size)
+    horizon, _ = horizon_of(env.simulation, steps if animated else steps or 0, limits or DEFAULT_LIMITS)
     if animated:
-        horizon, _ = horizon_of(env.simulation, steps, limits or DEFAULT_LIMITS)
         files = animate(env, horizon, target, progress)
         frames = env._env_plot.frames_written
     else:
-        advance(env, steps or 0, progress, until_done=False)
+        advance(env, horizon, progress, until_done=False)
         files, frames = [str(env.save_figure(target.absolute()))], 1
     sized = [*([] if size is None else ["--size", str(size)]), *region_options(region)]
     sized += [] if driven is None else ["--policy", driven]

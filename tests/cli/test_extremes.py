@@ -67,3 +67,31 @@ def test_some_extremes(irsim: Run) -> None:
 @pytest.mark.parametrize("part", range(40))
 def test_all_extremes(irsim: Run, part: int) -> None:
     check(irsim, part, 40)
+
+
+@pytest.mark.parametrize("steps", [2**31, 10**400])
+def test_a_picture_after_more_steps_than_a_run_may_have_is_refused(irsim: Run, steps: int) -> None:
+    Path("room.yaml").write_text(ROOM)
+    assert "steps are too many" in irsim("render", "room.yaml", "-o", "a.png", "--steps", steps, code=2).stderr
+
+
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [
+        ("--from", "-1e300"),
+        ("--from", "-inf"),
+        ("--to", "nan"),
+        ("--margin", "1.7e308"),
+        ("--robot-goal", "1e300,1"),
+        ("--robot-start", "inf,1"),
+        ("--offset", "1,1e200"),
+        ("--crop", "-1e300,0,1e300,1"),
+        ("--image-size", "1e300,nan"),
+    ],
+)
+def test_places_and_times_that_no_world_has_are_refused(irsim: Run, option: str, value: str) -> None:
+    Path("people.txt").write_text(PEOPLE)
+    result = irsim(*CROWD, option, value, code=2)
+    assert "internal-error" not in result.stderr
+    assert option in result.stderr or option[2:] in result.stderr
+    assert not Path("people.yaml").exists()

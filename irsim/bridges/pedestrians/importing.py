@@ -35,6 +35,8 @@ __all__ = ["ImportedPedestrians", "Placing", "import_pedestrians"]
 
 _GAP = 2.0
 """Time without a row that is worth a note [s]; splines have long ones."""
+_LARGEST = 1e9
+"""Largest length, time and coordinate [m or s]."""
 _ON_STEP = 1e-6
 """Steps by which a recorded time may miss the end of a step."""
 
@@ -135,6 +137,7 @@ def import_pedestrians(
     path, window, scene = Path(path), window or Window(), None if into is None else Path(into)
     layout, episodes = layout or Layout(path.name), episodes or Episodes()
     _check_options(layout, episodes, fps=fps, scale=scale)
+    _check_coordinates(window, layout, placing or Placing(), image_size)
     if scene is not None and suite is not None:
         raise ArgumentError("a suite has scenes of its own", "leave out --suite, or --into")
     itself = scene is not None and (out is None or Path(out).resolve() == scene.resolve())
@@ -197,12 +200,32 @@ def _check_options(layout: Layout, episodes: Episodes, **numbers: float | None) 
     if episodes.windows > MAX_SCENARIOS:
         what = f"a suite has at most {MAX_SCENARIOS} windows, got {episodes.windows}"
         raise ArgumentError(what, "give fewer windows")
-    if not (math.isfinite(layout.margin) and layout.margin >= 0):
+    if not 0 <= layout.margin <= _LARGEST:
         raise ArgumentError(f"margin must be 0 or more, got {layout.margin}", "give a margin in metres, such as 1")
     if layout.robot and BEHAVIORS.get(layout.behavior) is None:
         known = BEHAVIORS.names()
         fix = suggestion(layout.behavior, known, f"choose from {', '.join(known)}")
         raise ArgumentError(f"{clean(layout.behavior)!r} is not a behavior", fix)
+
+
+def _check_coordinates(
+    window: Window, layout: Layout, placing: Placing, image_size: tuple[float, float] | None
+) -> None:
+    """Refuse times, angles and coordinates that no world has."""
+    values = {
+        "from": (window.start,),
+        "to": () if window.end == math.inf else (window.end,),
+        "crop": window.box,
+        "robot-start": layout.start,
+        "robot-goal": layout.goal,
+        "rotate": (placing.rotate,),
+        "offset": placing.offset,
+        "image-size": image_size,
+    }
+    for name, given in values.items():
+        for value in given or ():
+            if not abs(value) <= _LARGEST:
+                raise ArgumentError(f"--{name} cannot be {value}", f"give numbers up to {_LARGEST:g}, or leave it out")
 
 
 def _remarks(
