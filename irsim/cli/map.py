@@ -81,6 +81,15 @@ class Unknown(str, Enum):
 
     free = "free"
     occupied = "occupied"
+    unknown = "unknown"
+
+
+_SAYS = {
+    "free": "count as free",
+    "occupied": "count as occupied",
+    "unknown": "stay unknown: planners avoid them, and beams pass",
+}
+"""What becomes of unknown cells."""
 
 
 class Up(str, Enum):
@@ -148,7 +157,8 @@ def import_(
     unknown: Annotated[
         Unknown | None,
         typer.Option(
-            help="How to treat cells of which nothing is known. Default: free for maps of ROS, else occupied.",
+            help="What cells are of which nothing is known; planners avoid unknown ones, and beams pass them. Default: "
+            "unknown for maps of ROS, else occupied.",
             show_default=False,
         ),
     ] = None,
@@ -285,7 +295,7 @@ def _show_import(result: MapImportResult, out: Path | None, robot: bool) -> None
         free += f"; other parts of this level [m²]: {', '.join(f'{area:.1f}' for area in others[:5])}"
     line(free)
     if result.unknown:
-        line(f"unknown: {result.unknown:,} cells, which count as {result.unknown_as}")
+        line(f"unknown: {result.unknown:,} cells, which {_SAYS[result.unknown_as]}")
     if result.trip is not None:
         start, goal = ([round(x, 2) for x in place] for place in (result.trip.start, result.trip.goal))
         line(f"for a robot: state {start}, goal {goal}, {result.trip.clearance:g} m from obstacles all the way")

@@ -141,7 +141,7 @@ class MapImportResult(Result):
     unknown: int
     """Cells of which nothing is known."""
     unknown_as: str
-    """Their meaning in the scenario: free or occupied."""
+    """Their meaning in the scenario: free, occupied or unknown."""
     level: int
     """Level of the map."""
     height: float

@@ -202,8 +202,10 @@ def test_the_command(tmp_path, monkeypatch) -> None:
     result = call("map", "import", "map.yaml", "-o", "world.yaml")
     assert result.exit_code == 0
     assert "6 x 4 cells of 0.5 m, 1 occupied" in result.output
-    result = call("map", "export", "world.yaml", "-o", "back.yaml", "--mode", "scale", "--json")
-    assert json.loads(result.output)["files"] == ["back.yaml", "back.pgm"]
+    result = call("map", "export", "world.yaml", "-o", "back.yaml", "--mode", "scale", "--image", "png", "--json")
+    assert json.loads(result.output)["files"] == ["back.yaml", "back.png"]
+    result = call("map", "export", "world.yaml", "-o", "other.yaml", "--mode", "scale")
+    assert (result.exit_code, "--image png" in " ".join(result.output.split())) == (2, True)
     assert call("map", "export", "world.yaml", "-o", "back.yaml").exit_code == 2
     assert call("map", "export", "world.yaml", "-o", "back.yaml", "--force").exit_code == 0
     assert call("map", "import", "none.yaml", "-o", "w.yaml").exit_code == 2

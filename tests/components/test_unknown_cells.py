@@ -14,11 +14,14 @@ from PIL import Image
 
 import irsim
 import irsim._core as core
+from irsim import api
 from irsim.api import validate
+from irsim.bridges.maps.ros_server import export_map
 from irsim.components.maps._grid import map_grid, merged
 from irsim.components.maps._site import Raster
 from irsim.navigation.geodesic import Geodesics
 from irsim.navigation.map import coarsen
+from irsim.objects.describe import describe_scene
 from irsim.scenario.read import read
 from irsim.simulation.simulation import Simulation
 
@@ -197,3 +200,25 @@ def test_starts_and_goals_in_the_unknown_are_found(tmp_path) -> None:
     assert "starts in an unknown part of the map" in start.message
     assert "is free" in start.fix
     assert not {"goal-blocked", "initial-overlap"} & set(findings(write_map(tmp_path, robot("{name: follow}"))))
+
+
+@pytest.mark.parametrize(("mode", "image"), [("trinary", "pgm"), ("raw", "pgm"), ("scale", "png")])
+def test_maps_for_the_map_server_keep_them(tmp_path, mode, image) -> None:
+    scenario = read(write_map(tmp_path)).scenario
+    export_map(scenario, tmp_path / "back.yaml", mode=mode, image=image)
+    back = read({"world": {"obstacle_map": {"name": "ros", "path": str(tmp_path / "back.yaml"), "unknown": "unknown"}}})
+    np.testing.assert_array_equal(back.scenario.grid.cells.unknown, scenario.grid.cells.unknown)
+    np.testing.assert_array_equal(back.scenario.grid.cells.occupied, scenario.grid.cells.occupied)
+
+
+def test_scenes_of_other_programs_know_them(tmp_path) -> None:
+    scene = describe_scene(Simulation(read(write_map(tmp_path)).scenario, [0]))
+    np.testing.assert_array_equal(scene.grid.levels == -1, scene.grid.unknown)
+    assert (scene.grid.unknown.sum(), scene.grid.occupied.sum()) == (1600, 1000)
+
+
+def test_pictures_show_them_in_grey(tmp_path) -> None:
+    api.render(write_map(tmp_path), tmp_path / "look.png")
+    pixels = np.asarray(Image.open(tmp_path / "look.png").convert("L")).astype(int)
+    grey = ((pixels > 190) & (pixels < 220)).mean() / (pixels < 40).mean()
+    assert 1.3 < grey < 1.7, "1.6 times as many cells are unknown as occupied; axes are dark, too"

@@ -44,7 +44,7 @@ _BY_ROW = ("pose", "twist", "control", "goal", "arrived", "collided", "stopped")
 
 
 def scene_as_json(scene: SceneDescription) -> dict[str, Any]:
-    """A scene as JSON types; infinite numbers are ``null``, and cells of a map are runs of free and solid ones."""
+    """A scene as JSON types; infinite numbers are ``null``, cells of a map are runs of free and solid ones."""
     grid = scene.grid
     data = asdict(replace(scene, grid=None, maps=()))
     del data["maps"]
@@ -57,6 +57,8 @@ def scene_as_json(scene: SceneDescription) -> dict[str, Any]:
     if grid is not None:
         data["grid"] = {"size": list(grid.occupied.shape), "cell": grid.cell, "origin": grid.origin,
                          "runs": _runs(grid.occupied)}  # fmt: skip
+        if grid.unknown.any():
+            data["grid"]["unknown"] = _runs(grid.unknown)
     data["about"] = dict(scene.about)
     return _plain(data)  # type: ignore[no-any-return]
 

@@ -73,7 +73,7 @@ def export_map(
         overwrite: Replace existing files.
 
     Raises:
-        MapFileError: The scenario has no map.
+        MapFileError: The scenario has no map, or the picture cannot hold its unknown cells.
         TargetError: A file exists already.
     """
     target = Path(out)
@@ -88,6 +88,9 @@ def export_map(
         values = scenario.grid.values()
     values, side = _with_square_cells(values, scenario.grid.cell)
     picture = target.with_suffix(f".{image}")
+    if image == "pgm" and mode == "scale" and (values < 0).any():
+        what = "mode scale tells unknown cells by opacity, which pictures of the format pgm do not have"
+        raise MapFileError("bad-argument", what, "write --image png, or --mode trinary or raw")
     meta = RosMeta(picture.name, side, (*scenario.grid.origin, 0.0), mode=mode)
     check_new(picture, overwrite=overwrite)
     write_new(target, meta.as_yaml(), overwrite=overwrite)

@@ -55,7 +55,7 @@ class MapSidecar:
         source: ``file`` (its name), ``kind``, ``bytes`` and ``sha256`` of the file that the map was made from.
         agent: The robot that the map was made for: ``headroom``, ``climb``, ``radius`` [m] and ``slope`` [deg].
         level: Number of the level, counted from the lowest.
-        unknown: Whether unknown cells count as ``free`` or ``occupied`` in the scenario.
+        unknown: Whether unknown cells are ``free``, ``occupied`` or ``unknown`` in the scenario.
         irsim: Version of irsim that made the map.
     """
 

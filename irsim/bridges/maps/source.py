@@ -69,8 +69,9 @@ class ImportOptions(Options):
     Default: none."""
     seed_point: tuple[Meters, Meters] | None = None
     """x, y of a place that is free: what is connected to it is free in the map. Default: the largest connected part."""
-    unknown: Literal["free", "occupied"] | None = None
-    """Whether unknown cells count as free or occupied in the scenario. Default: free for maps of ROS, else occupied."""
+    unknown: Literal["free", "occupied", "unknown"] | None = None
+    """What unknown cells are in the scenario: ``unknown`` ones let beams and bodies pass, while planners and random
+    places keep out. Default: unknown for maps of ROS, else occupied."""
     meters_per_unit: Annotated[Meters, Field(gt=0, le=1e6)] | None = None
     """Length of a unit of a mesh, a stage or a scene of splats, such as 0.001 for millimeters. Default: what a stage of
     USD says, else 1."""
@@ -242,7 +243,7 @@ class Kind:
         suffixes: How names of such files end.
         accepts: Whether a file may be of this kind, by its first bytes.
         read: Reads a file; its errors are :class:`~irsim.bridges.base.BridgeError`.
-        unknown: Whether unknown cells count as free or occupied unless the caller decides.
+        unknown: Whether unknown cells count as free, occupied or unknown unless the caller decides.
         extra: Extra of pyproject.toml whose libraries it needs.
         libraries: Their modules.
         unused: Names of options that say nothing about such files.

@@ -7,7 +7,7 @@ import json
 import math
 import os
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -113,7 +113,8 @@ def files_of(
     Args:
         occupancy: Values and place of the map.
         values: (nx, ny) occupancies, -1 where unknown.
-        filled: (nx, ny) the same with unknown cells filled in.
+        filled: (nx, ny) the same with unknown cells filled in; those that stay unknown need a map of ROS, whose picture
+            tells them apart.
         target: The scenario.
         sidecar: Content of the sidecar.
         about: A sentence about the source.
@@ -121,8 +122,8 @@ def files_of(
         ros_map: YAML file of a map for the ROS map server; None for no such file.
         entries: Obstacles as lines of YAML, which take the place of the picture; None for the picture.
     """
-    picture = target.with_suffix(".png")
-    grid = occupancy.grid
+    picture, grid = target.with_suffix(".png"), occupancy.grid
+    described = target.with_suffix(".map.yaml") if entries is None and (filled < 0).any() else None
     width, height = grid.nx * grid.resolution, grid.ny * grid.resolution
     lines = [f"# {about}; {sidecar_path(target).name} says where it is in the world of that file.", "world:"]
     if trip is not None:
@@ -132,21 +133,28 @@ def files_of(
         f"  height: {_short(height)}",
         f"  offset: [{_short(grid.x)}, {_short(grid.y)}]",
     ]
-    if entries is None:
+    if described is not None:
+        lines.append(f"  obstacle_map: {{name: ros, path: {json.dumps(described.name)}, unknown: unknown}}")
+    elif entries is None:
         lines.append(f"  obstacle_map: {{name: image, path: {json.dumps(picture.name)}}}")
     if trip is not None:
         lines += _robot(trip)
     if entries:
         lines += ["obstacle:", *entries]
-    grey = np.round(255 * (1 - filled / 100)).astype(np.uint8)
+    place = (float(_short(grid.x)), float(_short(grid.y)), 0.0)
+    meta = RosMeta(picture.name, float(_short(grid.resolution)), place)
+    grey = np.round(255 * (1 - np.clip(filled[:, ::-1].T, 0, 100) / 100)).astype(np.uint8)
+    pixels = grey if described is None else pixels_of(values, meta)
     contents = [
         (target, with_modeline("\n".join(lines) + "\n", target).encode()),
-        *([(picture, _image(grey[:, ::-1].T, "PNG"))] if entries is None else []),
+        *([(picture, _image(pixels, "PNG"))] if entries is None else []),
         (sidecar_path(target), sidecar.as_json().encode()),
     ]
+    if described is not None:
+        contents.append((described, meta.as_yaml().encode()))
     if ros_map is not None:
         image = ros_map.with_suffix(".pgm")
-        meta = RosMeta(image.name, float(_short(grid.resolution)), (float(_short(grid.x)), float(_short(grid.y)), 0.0))
+        meta = replace(meta, image=image.name)
         contents += [(ros_map, meta.as_yaml().encode()), (image, _image(pixels_of(values, meta), "PPM"))]
     return contents
 

@@ -110,6 +110,8 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
     scans = _add_scans(columns, trace, rows, lidars)
     if grid is not None:
         columns.add("cells", grid.pop("runs"))
+        if "unknown" in grid:
+            columns.add("unknown", grid.pop("unknown"))
     head = {
         "format": FORMAT,
         "run_id": run.id,

@@ -64,14 +64,24 @@ def page_grid(scene: SceneDescription) -> dict[str, Any] | None:
 
     Returns:
         Number of cells along x and y, ``extent`` [m], and ``runs``: lengths of alternating runs of free and occupied
-        cells.
+        cells. ``unknown`` has such runs of known and unknown cells if any are unknown.
     """
     if scene.grid is None:
         return None
-    full = scene.grid.occupied.T.ravel()
+    made = {
+        "cells": list(scene.grid.occupied.shape),
+        "extent": [float(v) for v in scene.grid.extent],
+        "runs": _runs(scene.grid.occupied),
+    }
+    unknown = scene.grid.unknown
+    return {**made, "unknown": _runs(unknown)} if unknown.any() else made
+
+
+def _runs(cells: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Lengths of alternating runs of cells that are not set and that are, row by row from the lowest."""
+    full = cells.T.ravel()
     ends = np.flatnonzero(np.diff(full.astype(np.int8), prepend=0))
-    runs = np.diff(np.concatenate([[0], ends, [full.size]]))
-    return {"cells": list(scene.grid.occupied.shape), "extent": [float(v) for v in scene.grid.extent], "runs": runs}
+    return np.diff(np.concatenate([[0], ends, [full.size]]))
 
 
 def page_zones(zones: Sequence[Zone]) -> list[dict[str, Any]]:

@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.runs import Run
+from irsim.objects.describe import describe_scene
+from irsim.runs import Run, open_run
 from tests.bridges.export.conftest import HALL
 from tests.bridges.scenes import recorded
+from tests.components.test_unknown_cells import robot, write_map
 
 pytestmark = pytest.mark.records
 Bag = dict[str, list[tuple[float, Any]]]
@@ -212,3 +214,13 @@ def test_maps_are_occupancy_grids() -> None:
     assert set(grid.data) <= set(range(101))
     assert len(grid.data) == 800
     assert max(grid.data) > 50
+
+
+def test_maps_say_what_is_unknown(tmp_path) -> None:
+    file = write_map(tmp_path, robot())
+    irsim.run(file, steps=2, record=tmp_path / "run")
+    irsim.export_run(open_run(tmp_path / "run"), "run.mcap")
+    [(_, grid)] = decoded("run.mcap")["/map"]
+    cells = np.reshape(grid.data, (100, 100)).T
+    assert ((cells == -1) == (describe_scene(irsim.make(file, display=False).simulation).grid.unknown)).all()
+    assert (cells > 50).sum() == 1000

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import shapely
 import yaml
+from PIL import Image
 from typer.testing import CliRunner
 
 from irsim import api
@@ -321,3 +322,27 @@ def test_roads_that_declare_entities_are_refused_in_one_sentence() -> None:
     with pytest.raises(BridgeError) as caught:
         import_map(road, "a.yaml")
     assert str(caught.value).count("cannot be imported") == 1
+
+
+def test_what_is_unknown_stays_unknown(scene) -> None:
+    import_map(scene, "a.yaml", ros_map="map.yaml")
+    for name, result in (
+        ("ros", import_map("map.yaml", "ros.yaml", robot=True)),
+        ("mesh", import_map(scene, "mesh.yaml", unknown="unknown", robot=True)),
+    ):
+        assert f"{name}.map.yaml" in {Path(file).name for file in result.files}
+        assert result.unknown_as == read_sidecar(f"{name}.yaml").unknown == "unknown"
+        grid = read(Path(f"{name}.yaml")).scenario.grid
+        assert result.unknown == grid.cells.unknown.sum() > 0
+        assert result.occupied == grid.cells.count
+        assert api.validate(f"{name}.yaml", strict=True).valid
+        assert api.run(f"{name}.yaml", seed=1).outcome == "success"
+    import_map("ros.map.yaml", "again.yaml")
+    assert (read(Path("again.yaml")).scenario.grid.cells.unknown == grid.cells.unknown).all()
+
+
+def test_a_map_that_is_known_stays_a_picture(scene) -> None:
+    import_map(scene, "a.yaml", ros_map="map.yaml", unknown="occupied")
+    Image.fromarray(np.full((20, 20), 254, np.uint8)).save("map.pgm")
+    result = import_map("map.yaml", "known.yaml")
+    assert (result.unknown, [Path(file).suffix for file in result.files]) == (0, [".yaml", ".png", ".json"])

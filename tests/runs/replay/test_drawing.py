@@ -11,8 +11,12 @@ from hypothesis import strategies as st
 
 import irsim
 from irsim.api import read_scenario
+from irsim.bridges.json_lines.bridge import scene_as_json
 from irsim.objects.describe import describe_scene
 from irsim.runs.replay.drawing import Columns, changes, page_grid, page_objects, quantised
+from irsim.scenario.read import read
+from irsim.simulation.simulation import Simulation
+from tests.components.test_unknown_cells import write_map
 from tests.runs.replay.reading import unpacked
 
 SCENE = """
@@ -43,6 +47,17 @@ def test_cells_of_the_map_are_told_row_by_row_from_below(env: irsim.Env) -> None
     known = env._world.grid_map > 50
     assert 0 < known.sum() < known.size
     assert np.array_equal(np.reshape(shown, (6, 12)), known.T)
+
+
+def test_unknown_cells_are_runs_of_their_own(tmp_path) -> None:
+    scenario = read(write_map(tmp_path)).scenario
+    assert scenario is not None
+    scene = describe_scene(Simulation(scenario, [0]))
+    grid = page_grid(scene)
+    assert grid is not None
+    shown = np.repeat(np.arange(len(grid["unknown"])) % 2, grid["unknown"])
+    assert np.array_equal(shown.reshape(100, 100), scene.grid.unknown.T)
+    assert scene_as_json(scene)["grid"]["unknown"] == [4000, *[80, 20] * 19, 80, 4020]
 
 
 def test_beams_have_the_directions_of_the_scan(env: irsim.Env) -> None:

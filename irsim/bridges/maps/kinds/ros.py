@@ -77,5 +77,5 @@ KIND = Kind(
         "lanes",
         "root",
     ),
-    unknown="free",
+    unknown="unknown",
 )

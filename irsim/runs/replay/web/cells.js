@@ -1,26 +1,33 @@
 // The cells of a map: unpacked, drawn once as an image, and crossed by beams.
 
-export function cellsOf({ cells: [nx, ny], extent: [left, right, bottom, top] }, runs) {
-  const full = new Uint8Array(nx * ny);
-  let at = 0, occupied = 0;
-  for (const length of runs) {
-    if (occupied) full.fill(1, at, at + length);
-    at += length;
-    occupied ^= 1;
-  }
-  return { nx, ny, left, right, bottom, top, dx: (right - left) / nx, dy: (top - bottom) / ny, full };
+export function cellsOf({ cells: [nx, ny], extent: [left, right, bottom, top] }, runs, unknownRuns) {
+  const full = unpacked(nx * ny, runs), unknown = unpacked(nx * ny, unknownRuns ?? []);
+  return { nx, ny, left, right, bottom, top, dx: (right - left) / nx, dy: (top - bottom) / ny, full, unknown };
 }
 
-/** The map as an image of one pixel per cell, the top row first. */
-export function cellImage({ nx, ny, full }, [red, green, blue]) {
+/** Cells that alternate in runs, beginning with 0. */
+function unpacked(count, runs) {
+  const cells = new Uint8Array(count);
+  let at = 0, set = 0;
+  for (const length of runs) {
+    if (set) cells.fill(1, at, at + length);
+    at += length;
+    set ^= 1;
+  }
+  return cells;
+}
+
+/** The map as an image of one pixel per cell, the top row first; unknown cells are pale. */
+export function cellImage({ nx, ny, full, unknown }, [red, green, blue]) {
   const canvas = document.createElement("canvas");
   canvas.width = nx;
   canvas.height = ny;
   const context = canvas.getContext("2d"), image = context.createImageData(nx, ny);
   for (let j = 0; j < ny; j++) {
     for (let i = 0; i < nx; i++) {
-      if (!full[j * nx + i]) continue;
-      image.data.set([red, green, blue, 255], 4 * ((ny - 1 - j) * nx + i));
+      const cell = j * nx + i;
+      if (full[cell] || unknown[cell])
+        image.data.set([red, green, blue, full[cell] ? 255 : 60], 4 * ((ny - 1 - j) * nx + i));
     }
   }
   context.putImageData(image, 0, 0);

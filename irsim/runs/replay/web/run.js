@@ -25,7 +25,7 @@ export function makeRun({ head, columns }) {
     flagged: changesOf(columns.flag_row, columns.flag_object, head.objects.length),
     flags: columns.flags,
     lidars: new Map(),
-    cells: head.grid ? cellsOf(head.grid, columns.cells) : null,
+    cells: head.grid ? cellsOf(head.grid, columns.cells, columns.unknown) : null,
     paths: head.shapes.map(pathOf),
     zones: (head.zones ?? []).map((zone) => ({ ...zone, path: pathOf(zone) })),
     reach: head.shapes.map(reachOf),
