@@ -60,7 +60,7 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
             raise _empty(what, f"give {hint.removeprefix(', ')}")
         fix = "check which axis points up (--up y or z), and the unit (--meters-per-unit); or try less --headroom"
         if len(scene.solid) and options.ground is None:
-            fix += f"; --ground {scene.solid[..., 2].min():.3g} gives a floor to a scene that has none"
+            fix += f"; --ground {scene.solid[..., 2].min():.3g} puts a floor below all of it"
         raise _empty(what, fix)
     number = _chosen(levels, _at_seed(levels, surfaces, grid, options), options)
     level = levels[number]

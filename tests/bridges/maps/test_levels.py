@@ -59,7 +59,7 @@ def test_headroom_and_climb_decide() -> None:
 def test_a_scene_without_a_floor_gets_a_ground() -> None:
     """Posts without anything below them, as in files of furniture; the ground is 1 m wider than they are."""
     posts = np.concatenate([box([3.0 * k, 0, 0.5], [3.0 * k + 0.4, 0.4, 1.5]) for k in range(4)])
-    with pytest.raises(BridgeError, match=r"--ground 0\.5 gives a floor"):
+    with pytest.raises(BridgeError, match=r"--ground 0\.5 puts a floor"):
         occupancy(posts)
     result = occupancy(posts, ground=0.5, resolution=0.05)
     assert result.height == pytest.approx(0.5, abs=0.01)
