@@ -267,14 +267,20 @@ def _read(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
         notes.append(f"it does not say its unit, which is then {scale:g} m; --meters-per-unit gives another")
     notes += layers.notes(stage)
     answer = {"meters_per_unit": scale, "frame": "usd_yup" if up == "Y" else "usd", "notes": notes}
-    return triangles, answer | {"own": _own(stage, collector.parts) if up == "Z" else None}
+    return triangles, answer | {"own": _own(stage, collector.parts, scale) if up == "Z" else None}
 
 
-def _own(stage: Any, parts: list[tuple[str, int]]) -> list[tuple[str, str, int]] | None:
-    """Room, name and number of triangles of all parts of a stage that irsim wrote.
+def _own(stage: Any, parts: list[tuple[str, int]], scale: float) -> list[tuple[Any, ...]] | None:
+    """Room, name, number of triangles and disk of all parts of a stage that irsim wrote.
+
+    Args:
+        stage: The stage, with z up.
+        parts: Path and number of triangles of its prims.
+        scale: Length of a unit [m].
 
     Returns:
-        They follow one another as the triangles do; None for a stage of others, or with things of others in it.
+        They follow one another as the triangles do, with center and radius of a disk [m], None for other shapes; None
+        for a stage of others, or with things of others in it.
     """
     if "irsim" not in stage.GetRootLayer().customLayerData:
         return None
@@ -286,5 +292,18 @@ def _own(stage: Any, parts: list[tuple[str, int]]) -> list[tuple[str, str, int]]
         if room not in _ROOMS or not path.startswith("/World/"):
             return None
         prim = stage.GetPrimAtPath(f"/World/{room}/{name.partition('/')[0]}") if name else None
-        result.append((room, str(prim.GetCustomDataByKey("irsim:name") or "") if prim else "", count))
+        title = str(prim.GetCustomDataByKey("irsim:name") or "") if prim else ""
+        result.append((room, title, count, _disk(stage.GetPrimAtPath(f"{path}_collision"), scale)))
     return result
+
+
+def _disk(prim: Any, scale: float) -> tuple[float, float, float] | None:
+    """Center and radius of the upright cylinder that collides in place of a mesh [m]; None if it is none."""
+    if not prim or not prim.IsA(UsdGeom.Cylinder):
+        return None
+    time = Usd.TimeCode.EarliestTime()
+    matrix = np.array(UsdGeom.XformCache(time).GetLocalToWorldTransform(prim))
+    if not np.allclose(matrix[:3, :3] @ matrix[:3, :3].T, np.eye(3)) or not np.isclose(matrix[2, 2], 1):
+        return None
+    x, y = scale * matrix[3, :2]
+    return float(x), float(y), scale * float(UsdGeom.Cylinder(prim).GetRadiusAttr().Get(time))

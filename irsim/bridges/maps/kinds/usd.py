@@ -8,6 +8,7 @@ layers before the stage is opened.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -59,12 +60,12 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene | Ou
     return outlines
 
 
-def _outlines(triangles: Triangles, parts: list[tuple[str, str, int]], options: ImportOptions) -> Outlines:
+def _outlines(triangles: Triangles, parts: list[tuple[Any, ...]], options: ImportOptions) -> Outlines:
     """Outlines of all that stands on the ground of a stage that irsim wrote, with the area that it had in irsim.
 
     Args:
         triangles: (T, 3, 3) corners [m].
-        parts: Room, name and number of triangles of one part after the other.
+        parts: Room, name, number of triangles and disk (None for other shapes) of one part after the other.
         options: How the import is done.
     """
     low = (options.height or 0.0) + options.climb
@@ -72,7 +73,7 @@ def _outlines(triangles: Triangles, parts: list[tuple[str, str, int]], options: 
     result = Outlines([], height=options.height or 0.0)
     moving = set[str]()
     end = 0
-    for room, name, count in parts:
+    for room, name, count, disk in parts:
         part, end = triangles[end : end + count], end + count
         if room == "Ground":
             (left, lower), (right, upper) = part.min(axis=(0, 1))[:2], part.max(axis=(0, 1))[:2]
@@ -80,7 +81,7 @@ def _outlines(triangles: Triangles, parts: list[tuple[str, str, int]], options: 
         elif room in ("Robots", "Pedestrians"):
             moving.add(name)
         elif (region := slices.slice_of_mesh(part, low, high)) is not None:
-            result.things.append(Outlined(name, region))
+            result.things.append(Outlined(name, region, None if disk is None else tuple(disk)))
     if moving:
         listed = ", ".join(clean(name, 80) for name in sorted(moving)[:_LISTED])
         more = ", …" if len(moving) > _LISTED else ""
