@@ -15,6 +15,7 @@ looks along z, with x to its right and y down.
 
 from __future__ import annotations
 
+import math
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -27,6 +28,7 @@ __all__ = [
     "CAMERA_AXES",
     "FRAMES",
     "FrameName",
+    "angles_of",
     "axes_of",
     "camera_pose",
     "inverse",
@@ -36,6 +38,8 @@ __all__ = [
     "rotation_of",
     "to_frame",
     "to_irsim",
+    "turn_between",
+    "turn_of",
     "yaw_of",
 ]
 
@@ -78,6 +82,33 @@ def rotation_of(yaw: Floats | float) -> Floats:
     result[..., 1, 0] = np.sin(angle)
     result[..., 0, 1] = -result[..., 1, 0]
     result[..., 2, 2] = 1.0
+    return result
+
+
+def turn_of(roll: float, pitch: float, yaw: float) -> Floats:
+    """(3, 3) rotation about x, then y, then z, which stay where they are, by angles [rad], as in SDF and URDF."""
+    (a, b, c), (i, j, k) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
+    return np.array([
+        [c * b, c * j * i - k * a, c * j * a + k * i],
+        [k * b, k * j * i + c * a, k * j * a - c * i],
+        [-j, b * i, b * a],
+    ])  # fmt: skip
+
+
+def angles_of(turn: Floats) -> tuple[float, float, float]:
+    """Roll, pitch and yaw [rad] of a rotation (3, 3), the inverse of :func:`turn_of`; roll is 0 where it is free."""
+    level = math.hypot(turn[0, 0], turn[1, 0])
+    pitch = math.atan2(-turn[2, 0], level)
+    if level < 1e-9:
+        return 0.0, pitch, math.atan2(-turn[0, 1], turn[1, 1])
+    return math.atan2(turn[2, 1], turn[2, 2]), pitch, math.atan2(turn[1, 0], turn[0, 0])
+
+
+def turn_between(start: Floats, end: Floats) -> Floats:
+    """(3, 3) the smallest rotation that brings one unit vector (3,) onto another one, less than half a turn away."""
+    x, y, z = np.cross(start, end)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    result: Floats = np.eye(3) + cross + cross @ cross / (1.0 + float(start @ end))
     return result
 
 

@@ -182,6 +182,15 @@ def import_(
             "stage of USD says."
         ),
     ] = Up.auto,
+    rotate: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ROLL,PITCH,YAW",
+            help="Turn a mesh, a stage or splats about the x, then y, then z axis of the file (deg), before --up. "
+            "Default: splats are turned upright; 0,0,0: not.",
+            show_default=False,
+        ),
+    ] = None,
     meters_per_unit: Annotated[
         float | None,
         typer.Option(
@@ -238,6 +247,7 @@ def import_(
         "climb": climb,
         "radius": radius,
         "up": up.value,
+        "rotate": None if rotate is None else _numbers(rotate, "rotation", 3, "--rotate 12.5,-3,0"),
         "level": level,
         "height": height,
         "ground": ground,

@@ -16,6 +16,7 @@ from typer.testing import CliRunner
 
 from irsim import api
 from irsim.bridges.base import BridgeError
+from irsim.bridges.frames import turn_of
 from irsim.bridges.maps import import_map, read_sidecar
 from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError
@@ -55,6 +56,19 @@ def test_a_large_mesh_gets_cells_that_fit(tmp_path) -> None:
     assert any("cells are 0.1 m" in note for note in result.notes)
     with pytest.raises(BridgeError, match=r"--resolution 0\.1\b"):
         import_map(ground, tmp_path / "b.yaml", resolution=0.05)
+
+
+def test_a_mesh_is_turned_by_hand(tmp_path) -> None:
+    turn = turn_of(*np.radians([65, -20, 10]))
+    straight = import_map(write_obj(tmp_path / "a.obj", flat()), tmp_path / "a.yaml", up="z")
+    tilted = write_obj(tmp_path / "b.obj", flat() @ turn)
+    result = import_map(tilted, tmp_path / "b.yaml", up="z", rotate=(65, -20, 10))
+    assert result.free_area == pytest.approx(straight.free_area, rel=0.04)  # walls lie on borders of cells
+    sidecar = read_sidecar(tmp_path / "b.yaml")
+    here = np.array([[1.8, 1.45, 0.75]])
+    np.testing.assert_allclose(
+        sidecar.to_irsim(here @ turn), read_sidecar(tmp_path / "a.yaml").to_irsim(here), atol=0.01
+    )
 
 
 @pytest.mark.parametrize("suffix", ["glb", "gltf", "obj", "ply", "stl"])
@@ -178,7 +192,7 @@ def test_other_hostile_files(tmp_path) -> None:
         ("land.stl", "more than 8,000,000 cells of 100 m"),
         ("faces.obj", "vertex|damaged"),
         ("points.obj", "no triangles|damaged"),
-        ("big.obj", "--resolution|not numbers"),
+        ("big.obj", "--bounds|not numbers"),
         ("cloud.ply", "no faces"),
     ]:
         with pytest.raises(BridgeError, match=said):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.frames import turn_of
 from irsim.bridges.maps import import_map, read_sidecar
 from irsim.bridges.maps.importing import read_occupancy
 from irsim.bridges.maps.source import FREE, ImportLimits, ImportOptions
@@ -58,6 +59,21 @@ def test_a_flat_in_any_unit_and_axis(up, unit, suffix) -> None:
     table = np.array([2.0 + 1.8, 0.75, -1.45] if up == "Y" else [2.0 + 1.8, 1.45, 0.75]) / unit
     assert sidecar.to_scene([[3.8, 1.45]], height=0.75) == pytest.approx(table[None], abs=0.01 / unit)
     assert sidecar.scale == pytest.approx(1 / unit)
+
+
+@pytest.mark.parametrize("up", ["Z", "Y"])
+def test_a_stage_is_turned_by_hand_in_its_own_axes(up) -> None:
+    turn = turn_of(*np.radians([25, -70, 0]))
+    triangles = y_up(flat()) if up == "Y" else flat()
+    stage, _ = new_stage(Path("tilted.usda"), up)
+    add_mesh(stage, "/World/flat", triangles @ turn)
+    stage.Save()
+    result = import_map("tilted.usda", "tilted.yaml", rotate=(25, -70, 0))
+    assert result.free_area == pytest.approx(40.5, abs=1.6)  # walls lie on borders of cells
+    table = np.array([1.8, 0.75, -1.45] if up == "Y" else [1.8, 1.45, 0.75])
+    np.testing.assert_allclose(
+        read_sidecar("tilted.yaml").to_scene([[1.8, 1.45]], height=0.75), [table @ turn], atol=0.01
+    )
 
 
 def test_a_large_stage_gets_cells_that_fit() -> None:

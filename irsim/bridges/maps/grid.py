@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.frames import turn_of
 from irsim.common.arrays import Floats
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "side_notes",
     "slices",
     "spread",
+    "turned",
 ]
 
 Ints: TypeAlias = NDArray[np.int64]
@@ -100,6 +102,23 @@ def clipped(triangles: Triangles, bounds: tuple[float, float, float, float]) -> 
     return triangles
 
 
+def turned(
+    triangles: Triangles, rotate: tuple[float, float, float] | None, axes: Floats | None = None
+) -> tuple[Triangles, Floats | None]:
+    """Triangles that are turned by hand, and the rotation (3, 3) in the frame of their file.
+
+    Args:
+        triangles: (T, 3, 3) corners.
+        rotate: Roll, pitch and yaw in the frame of the file [deg]; None if they stay as they are.
+        axes: (3, 3) the axes of the triangles in the frame of the file; None if they are in that frame.
+    """
+    if rotate is None:
+        return triangles, None
+    turn = turn_of(*np.radians(rotate))
+    own = turn if axes is None else axes.T @ turn @ axes
+    return triangles.astype(np.float64) @ own.T, turn
+
+
 def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int, hint: str = "") -> Grid:
     """The grid over a rectangle with one cell more on each side; its lines are at multiples of the resolution.
 
@@ -153,7 +172,7 @@ def fitting_side(
 
 
 def side_notes(given: float | None, side: float) -> list[str]:
-    """What to say about the side of the cells [m]: nothing if the user has asked for it, or if it is the usual one."""
+    """Remarks on the side of the cells [m]: nothing if the user has asked for it, or if it is the usual one."""
     if given is not None or side == SIDES[0]:
         return []
     why = "so that walls and areas are kept" if side < SIDES[0] else "so that the map is not too large"

@@ -92,7 +92,7 @@ def import_map(
     if robot and trip is None:
         raise BridgeError("bridge-file", "the map has no room for a robot", "leave out the robot, or try less --radius")
     sidecar = MapSidecar(
-        scene_transform(result.frame, result.height, result.meters_per_unit),
+        scene_transform(result.frame, result.height, result.meters_per_unit, result.turn),
         result.frame,
         result.height,
         result.grid.resolution,

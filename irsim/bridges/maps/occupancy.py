@@ -77,7 +77,7 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
         scene.radius,
         [*scene.notes, *side_notes(options.resolution, side)],
     )
-    result.headroom, result.climb = scene.headroom, scene.climb
+    result.headroom, result.climb, result.turn = scene.headroom, scene.climb, scene.turn
     if spans is not None and len(levels) > 1 and options.level is None and options.height is None:
         result.notes.append(f"level {number} of {len(levels)} was taken; --list-levels lists them, --level picks one")
     if spans is not None and side > COARSE and _may_be_roof(level, surfaces, spans, options, headroom):

@@ -48,7 +48,7 @@ class MapSidecar:
         T_scene_from_irsim: (4, 4) maps homogeneous points (x, y, z, 1) of irsim [m], z above the floor, to the frame
             and the unit of length of the scene.
         frame: Convention of the scene's axes, see :mod:`irsim.bridges.frames`.
-        floor_height: Height of the chosen floor along the scene's upward axis [m].
+        floor_height: Height of the chosen floor along the upward axis of the upright scene [m].
         resolution: Side of a cell [m].
         origin: x, y of the lower left corner of the map [m], frame of irsim.
         size: Number of cells along x and y.
@@ -148,19 +148,24 @@ class MapSidecar:
         return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
-def scene_transform(frame: str, floor_height: float = 0.0, meters_per_unit: float = 1.0) -> Floats:
-    """``T_scene_from_irsim`` of a map that keeps the horizontal coordinates of its scene.
+def scene_transform(
+    frame: str, floor_height: float = 0.0, meters_per_unit: float = 1.0, turn: Floats | None = None
+) -> Floats:
+    """``T_scene_from_irsim`` of a map that keeps the horizontal coordinates of its scene, once that is upright.
 
     Args:
         frame: Convention of the scene's axes.
         floor_height: Height of the floor along the scene's upward axis [m].
         meters_per_unit: Length of a unit of the scene [m].
+        turn: (3, 3) rotation in the frame of the scene that makes it upright; None if it stands upright.
 
     Returns:
         (4, 4) matrix of points.
     """
     axes = np.eye(4)
     axes[:3, :3] = axes_of(frame) / meters_per_unit
+    if turn is not None:
+        axes[:3, :3] = turn.T @ axes[:3, :3]
     result: Floats = axes @ pose_matrix(np.zeros(3), floor_height)
     return result
 

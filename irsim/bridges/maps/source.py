@@ -60,6 +60,9 @@ class ImportOptions(Options):
     up: Literal["auto", "y", "z", "-y"] = "auto"
     """Axis of a mesh, a stage or of splats that points up; ``-y``: y points down. ``auto`` is y for glTF and OBJ, z for
     PLY and STL, and what a stage of USD says."""
+    rotate: tuple[Degrees, Degrees, Degrees] | None = None
+    """Roll, pitch and yaw by which a mesh, a stage or splats are turned before ``up`` counts: about the x, then the y,
+    then the z axis of the file. Default: splats are turned upright, by up to 45°; all else stays as it is."""
     level: Annotated[int, Field(ge=0)] | None = None
     """Number of the level, the lowest is 0. Default: the largest one that is not a roof of another."""
     height: Meters | None = None
@@ -138,6 +141,7 @@ class Scene:
         headroom, climb: Height and step of the robot that the floors were made for [m]; None if the file does not say.
         radius: Distance from walls that the floors keep already [m].
         notes: Remarks for the user.
+        turn: (3, 3) rotation in the frame of the file that has made it upright; None if there was none.
     """
 
     frame: str
@@ -149,6 +153,7 @@ class Scene:
     climb: float | None = None
     radius: float = 0.0
     notes: list[str] = field(default_factory=list)
+    turn: Floats | None = None
 
 
 @dataclass
@@ -170,6 +175,7 @@ class Occupancy:
         notes: Remarks for the user.
         parts: Other files that it was read from.
         things: Outlines that it was made from; None if it was made from something else.
+        turn: (3, 3) rotation in the frame of the file that has made it upright; None if there was none.
     """
 
     values: Floats
@@ -187,6 +193,7 @@ class Occupancy:
     notes: list[str] = field(default_factory=list)
     parts: list[Path] = field(default_factory=list)
     things: list[Outlined] | None = None
+    turn: Floats | None = None
 
 
 @dataclass(frozen=True)

@@ -224,9 +224,14 @@ class Plan:
     too_large: int
 
 
-def level_shares(splats: Splats) -> dict[str, float]:
-    """How much of the surfaces is level along each axis of the scene: sums of opacity × area of flat splats."""
-    covariance = covariance_of(splats.scale, splats.rotation)
+def level_shares(splats: Splats, turn: Floats | None = None) -> dict[str, float]:
+    """How much of the surfaces is level along each axis of the scene: sums of opacity × area of flat splats.
+
+    Args:
+        splats: The scene.
+        turn: (3, 3) rotation by which it is turned before.
+    """
+    covariance = covariance_of(splats.scale, splats.rotation, turn)
     along = np.diagonal(covariance, axis1=1, axis2=2)
     total = along.sum(axis=1)
     weight = splats.opacity * np.minimum(total, 1.0)

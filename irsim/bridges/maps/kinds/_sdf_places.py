@@ -10,6 +10,7 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
+from irsim.bridges.frames import turn_of
 from irsim.bridges.maps.source import ImportLimits, unusable
 from irsim.bridges.maps.xml_files import find_numbers, read_xml
 from irsim.common.arrays import Floats
@@ -37,17 +38,8 @@ def pose_of(path: Path, element: ET.Element | None) -> Floats:
     values = find_numbers(path, element, 6)
     degrees = element.get("degrees", "false").lower() in ("true", "1")
     result[:3, 3] = values[:3]
-    result[:3, :3] = _rotation(*(np.radians(values[3:]) if degrees else values[3:]))
+    result[:3, :3] = turn_of(*(np.radians(values[3:]) if degrees else values[3:]))
     return result
-
-
-def _rotation(roll: float, pitch: float, yaw: float) -> Floats:
-    (a, b, c), (i, j, k) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
-    return np.array([
-        [c * b, c * j * i - k * a, c * j * a + k * i],
-        [k * b, k * j * i + c * a, k * j * a - c * i],
-        [-j, b * i, b * a],
-    ])  # fmt: skip
 
 
 class Frames:

@@ -95,6 +95,7 @@ KIND = Kind(
         "ground",
         "climb",
         "up",
+        "rotate",
         "level",
         "height",
         "meters_per_unit",

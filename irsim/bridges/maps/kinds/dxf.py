@@ -53,7 +53,7 @@ KIND = Kind(
     unknown="free",
     extra="plans",
     libraries=("ezdxf",),
-    unused=("headroom", "slope", "ground", "climb", "up", "level", "height", "opacity", "lanes", "root"),
+    unused=("headroom", "slope", "ground", "climb", "up", "rotate", "level", "height", "opacity", "lanes", "root"),
     by_name=True,
     layered=True,
 )

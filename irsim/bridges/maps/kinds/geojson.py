@@ -119,5 +119,5 @@ KIND = Kind(
     accepts=lambda head: _HEAD.search(head) is not None,
     read=read,
     unknown="free",
-    unused=("headroom", "slope", "ground", "climb", "up", "level", "height", "opacity", "lanes", "root"),
+    unused=("headroom", "slope", "ground", "climb", "up", "rotate", "level", "height", "opacity", "lanes", "root"),
 )

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.maps.apart import read_apart
-from irsim.bridges.maps.grid import Triangles
+from irsim.bridges.maps.grid import Triangles, turned
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
 
 __all__ = ["KIND", "read_triangles"]
@@ -66,6 +66,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
         BridgeError: The file is damaged, refers to other files, or has no triangles.
     """
     triangles, said = read_triangles(path, limits, options.root)
+    triangles, turn = turned(triangles, options.rotate)
     up = said["up"] if options.up == "auto" else options.up
     areas = np.abs(_normals(triangles)).sum(axis=0)
     notes = list(said["notes"])
@@ -85,7 +86,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     unit = options.meters_per_unit or float(said["unit"])
     if unit != 1.0:
         triangles = triangles.astype(np.float64) * unit
-    return Scene(_FRAMES[up], triangles, meters_per_unit=unit, notes=notes)
+    return Scene(_FRAMES[up], triangles, meters_per_unit=unit, notes=notes, turn=turn)
 
 
 def _checked(path: Path, triangles: Triangles) -> Triangles:

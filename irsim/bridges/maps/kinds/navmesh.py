@@ -180,5 +180,5 @@ KIND = Kind(
     suffixes=(".navmesh",),
     accepts=lambda head: head.startswith(_SET_MAGIC),
     read=read,
-    unused=("headroom", "slope", "ground", "climb", "up", "meters_per_unit", "opacity", "lanes", "root"),
+    unused=("headroom", "slope", "ground", "climb", "up", "rotate", "meters_per_unit", "opacity", "lanes", "root"),
 )

@@ -309,6 +309,6 @@ KIND = Kind(
     suffixes=(".xodr",),
     accepts=lambda head: False,  # it is known by its root element
     read=read,
-    unused=("slope", "ground", "up", "meters_per_unit", "opacity", "root"),
+    unused=("slope", "ground", "up", "rotate", "meters_per_unit", "opacity", "root"),
     roots=("OpenDRIVE",),
 )

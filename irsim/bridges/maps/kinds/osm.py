@@ -124,6 +124,7 @@ KIND = Kind(
         "ground",
         "climb",
         "up",
+        "rotate",
         "level",
         "height",
         "meters_per_unit",

@@ -69,6 +69,7 @@ KIND = Kind(
         "ground",
         "climb",
         "up",
+        "rotate",
         "level",
         "height",
         "meters_per_unit",

@@ -279,6 +279,6 @@ KIND = Kind(
     accepts=lambda head: False,  # it is known by its root element
     read=read,
     unknown="free",
-    unused=("slope", "ground", "up", "level", "meters_per_unit", "opacity", "lanes"),
+    unused=("slope", "ground", "up", "rotate", "level", "meters_per_unit", "opacity", "lanes"),
     roots=("sdf", "gazebo", "world"),
 )

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.frames import axes_of, inverse
+from irsim.bridges.frames import angles_of, axes_of, inverse, turn_between, turn_of
 from irsim.bridges.maps.apart import read_apart
 from irsim.bridges.maps.grid import Grid, side_notes
 from irsim.bridges.maps.occupancy import cropped
@@ -18,6 +18,7 @@ from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, Imp
 from irsim.bridges.splats.occupancy import Plan, PlanOptions, find_floor, ground_plan, level_shares
 from irsim.bridges.splats.reading import read_header, read_splats
 from irsim.bridges.splats.splats import Splats, moved
+from irsim.bridges.splats.upright import upward_of
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
 
@@ -28,6 +29,8 @@ _SMALLEST_AREA_M2 = 0.5
 _MORE = 1.1
 """How much more of the surfaces must be level along another axis before a note says so."""
 _MAX_REGIONS = 50
+_LEVEL_DEG = 0.3
+"""Angle from which on a scene counts as tilted."""
 
 
 def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
@@ -41,13 +44,13 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     splats = unpacked_splats(path, limits)
     up = "z" if options.up == "auto" else options.up
     frame, unit = _FRAMES[up], options.meters_per_unit or 1.0
-    notes = []
+    turn, notes = _upright(splats, axes_of(frame)[:, 2], unit, options)
     if options.up == "auto":
-        notes += _doubts(level_shares(splats))
+        notes += _doubts(level_shares(splats, turn))
     if options.height is not None:
         height = options.height
     else:
-        height = find_floor(splats, axes_of(frame)[:, 2], unit=unit, opacity=options.opacity) * unit
+        height = find_floor(splats, turn.T @ axes_of(frame)[:, 2], unit=unit, opacity=options.opacity) * unit
         height = round(height, 6)
         notes.append(f"the floor was found at {height:.2f} m along the axis that points up; --height corrects it")
     wanted = PlanOptions(
@@ -58,7 +61,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
         bounds=options.bounds,
         max_cells=limits.cells,
     )
-    plan = ground_plan(splats, inverse(scene_transform(frame, height, unit)), wanted)
+    plan = ground_plan(splats, inverse(scene_transform(frame, height, unit, turn)), wanted)
     if plan.too_large:
         notes.append(f"{plan.too_large:,} splats were left out because they are larger than {wanted.max_size:g} m")
     notes += side_notes(options.resolution, plan.cell)
@@ -66,7 +69,22 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     values, regions, kept = _kept(plan, grid, options)
     areas = [round(float(cells) * grid.resolution**2, 4) for cells in regions[:_MAX_REGIONS]]
     result = Occupancy(values, grid, frame, height, unit, 0, [(height, areas[0], False)], areas, kept, notes=notes)
+    result.turn = turn
     return result if options.bounds is not None else cropped(result)
+
+
+def _upright(splats: Splats, up: Floats, unit: float, options: ImportOptions) -> tuple[Floats, list[str]]:
+    """(3, 3) the rotation that makes a scene upright, or the one that was asked for, and what to say about it."""
+    turn = np.eye(3) if options.rotate is None else turn_of(*np.radians(options.rotate))
+    upward = upward_of(splats, turn.T @ up, unit=unit, opacity=options.opacity)
+    if upward is None or upward.tilt < _LEVEL_DEG:
+        return turn, []
+    upright = turn_between(turn @ upward.direction, up) @ turn
+    words = ",".join(f"{angle:.2f}" for angle in np.degrees(angles_of(upright)))
+    if options.rotate is not None:
+        return turn, [f"the scene is still tilted by {upward.tilt:.1f}°: --rotate={words} turns it upright"]
+    said = f"the scene is tilted by {upward.tilt:.1f}°, and was turned upright, as by --rotate={words}"
+    return upright, [f"{said}; --rotate 0,0,0 leaves it as it is"]
 
 
 def unpacked_splats(path: Path, limits: ImportLimits) -> Splats:

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from irsim.bridges.frames import axes_of
 from irsim.bridges.maps import slices
 from irsim.bridges.maps.apart import read_apart
-from irsim.bridges.maps.grid import Triangles
+from irsim.bridges.maps.grid import Triangles, turned
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, Scene, unusable
 from irsim.common.archives import opened_archive
 from irsim.common.records import ContentError
@@ -49,9 +50,10 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene | Ou
     if not len(triangles):
         why = "; ".join(["it has no visible meshes", *answer["notes"]])
         raise unusable(path, why, "export the stage with its meshes, not only references")
-    outlines = None if answer["own"] is None else _outlines(triangles, answer["own"], options)
+    triangles, turn = turned(triangles, options.rotate, axes_of(frame))
+    outlines = None if answer["own"] is None or turn is not None else _outlines(triangles, answer["own"], options)
     if outlines is None or not outlines.things:
-        return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"])
+        return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"], turn=turn)
     given = next((name for name in ("level", "ground") if getattr(options, name) is not None), None)
     if given is not None:
         raise unusable(path, "irsim wrote it, and it has one floor, the ground", f"leave out --{given}")
