@@ -156,12 +156,13 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
 
 def _load_elsewhere(module: str) -> None:
     """Import a module outside the workspace, as Matplotlib obeys a matplotlibrc in the current directory."""
-    back = os.getcwd()
     with not_held():
+        back = os.getcwd()
         os.chdir(os.path.dirname(__file__))
-        import_module(module)
-    if current() is None:
-        os.chdir(back)
+        try:
+            import_module(module)
+        finally:
+            os.chdir(back)
 
 
 def _picture(result: SnapshotResult, checked: str = "") -> str:

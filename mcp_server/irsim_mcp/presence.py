@@ -3,31 +3,27 @@
 from __future__ import annotations
 
 import os
-import weakref
 from contextlib import suppress
-from pathlib import Path
 
 from irsim.common.text import clean
 from irsim_mcp.answers import failure
+from irsim_mcp.sandbox import Workspace
 
 __all__ = ["Presence"]
 
 
 class Presence:
-    """The place of a folder, which is open as long as this object lives, so that no other one looks the same.
+    """The place of the workspace, whose folder stays open, so that no other one looks the same.
 
     Args:
-        root: The folder.
+        workspace: The workspace.
     """
 
-    def __init__(self, root: Path) -> None:
-        self._root = root
+    def __init__(self, workspace: Workspace) -> None:
+        self._root, folder = workspace.root, workspace.folder
         self._known: os.stat_result | None = None
         with suppress(OSError):
-            if os.name == "posix":
-                descriptor = os.open(root, os.O_RDONLY)
-                weakref.finalize(self, os.close, descriptor).atexit = False
-            self._known = os.stat(root)
+            self._known = os.stat(self._root) if folder is None else os.fstat(folder.descriptor)
 
     def check(self) -> None:
         """Check that the folder is there.

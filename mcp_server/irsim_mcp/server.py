@@ -174,7 +174,7 @@ def build_server(
         log_level="WARNING",
     )
     server.calls = calls
-    server.presence = Presence(folder.root)
+    server.presence = Presence(folder)
     add_resources(server, services)
     add_docs(server)
     add_run_resources(server, services)

@@ -73,12 +73,6 @@ class Place:
         return {"run_id": self.run_id, "to": to, "objects": "movers", "out": "exports"}
 
 
-@pytest.fixture(autouse=True)
-def _where_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Tasks, which run in this process here, leave the current folder as workers may."""
-    monkeypatch.chdir(Path.cwd())
-
-
 @pytest.fixture(scope="module")
 def place(tmp_path_factory: pytest.TempPathFactory) -> Place:
     return Place(tmp_path_factory.mktemp("links") / "workspace")
@@ -170,7 +164,14 @@ def races(place: Place, call: str, number: int) -> None:
 
 
 @pytest.mark.slow(15)
-@pytest.mark.rotates(3)
-@pytest.mark.parametrize("call", ["compare", "inspect", "write"])
+@pytest.mark.rotates(12)
+@pytest.mark.parametrize("call", CALLS)
 def test_races(place: Place, call: str) -> None:
     races(place, call, 2000 if os.environ.get("IRSIM_NIGHTLY") else 200)
+
+
+def test_a_task_leaves_the_current_folder_as_it_was(place: Place, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(place.root.parent)
+    task, arguments = CALLS["draw"](place)
+    place.do(task, **arguments)
+    assert Path.cwd() == place.root.parent
