@@ -94,6 +94,25 @@ def test_names_that_are_searched_for_lead_nowhere_else(tmp_path, monkeypatch) ->
         import_map(file, "x.yaml")
 
 
+@pytest.mark.parametrize("kind", ["", "Xform "])
+def test_value_clips_are_not_read(kind, tmp_path, monkeypatch) -> None:
+    """Also those of a prim without a type, whose values are those of the prims below it."""
+    monkeypatch.chdir(tmp_path)
+    over = 'over "Part"\n{\n    over "Plane"\n    {\n        double width.timeSamples = {0: 8}\n    }\n}\n'
+    Path("clip.usda").write_text(_HEAD + over)
+    clips = (
+        '    clips = {\n dictionary default = {\n asset[] assetPaths = [@./clip.usda@]\n string primPath = "/Part"\n'
+        " double2[] active = [(0, 0)]\n double2[] times = [(0, 0)]\n asset manifestAssetPath = @./clip.usda@\n }\n }"
+    )
+    plane = '    def Plane "Plane"\n    {\n        double length = 3\n    }'
+    Path("scene.usda").write_text(f'{_HEAD}def {kind}"World" (\n{clips}\n)\n{{\n{plane}\n}}\n')
+    with pytest.raises(BridgeError, match="/World has value clips"):
+        import_map("scene.usda", "x.yaml")
+    command = [sys.executable, "-c", "from pxr import Usd; Usd.Stage.Open('scene.usda').Export('flat.usdc')"]
+    subprocess.run(command, check=True)
+    assert import_map("flat.usdc", "x.yaml").free_area == pytest.approx(24, rel=0.03)
+
+
 def test_the_command_that_flattens_a_stage_works(tmp_path, monkeypatch) -> None:
     """It is run as the advice says, where only pip's usd-core is installed, which has no commands."""
     monkeypatch.chdir(tmp_path)

@@ -235,11 +235,14 @@ def _check_targets(targets: list[Path], sources: list[Path]) -> None:
 
 
 def _check_used(kind: Kind, options: ImportOptions) -> None:
-    """No option is given that says nothing about files of this kind."""
+    """No option is given that says nothing about files of this kind, and the root is a folder."""
     for name in kind.unused if kind.layered else (*kind.unused, "layers"):
         if getattr(options, name) != ImportOptions.model_fields[name].default:
             what = f"the option {name} says nothing about {kind.title}"
             raise ArgumentError(what, f"leave out --{'layer' if name == 'layers' else name.replace('_', '-')}")
+    if options.root is not None and not Path(options.root).is_dir():
+        what = f"there is no folder '{clean(options.root, 200)}'"
+        raise ArgumentError(what, "give with --root the folder that holds the files")
 
 
 def _result(

@@ -292,6 +292,12 @@ def test_options_that_say_nothing_about_a_file_are_refused(scene) -> None:
         import_map("map.yaml", "b.yaml", resolution=0.1)
 
 
+def test_a_root_that_is_not_there_is_named() -> None:
+    Path("world.sdf").write_text('<sdf version="1.9"><world name="w"/></sdf>')
+    with pytest.raises(ArgumentError, match=r"there is no folder 'modles'\. Fix: give with --root"):
+        import_map("world.sdf", "a.yaml", root="modles")
+
+
 def test_what_a_map_is_made_from_is_not_overwritten(scene) -> None:
     import_map(scene, "a.yaml", ros_map="map.yaml")
     Path("map.pgm").rename("picture.png")

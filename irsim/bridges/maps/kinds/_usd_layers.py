@@ -80,6 +80,21 @@ class Layers:
                         self._check_place(asset, target)
                         waiting.append(target)
 
+    def check_clips(self, stage: Any) -> None:
+        """Refuse value clips, whose files the library opens when it looks for a value of a prim or of one below it.
+
+        Args:
+            stage: The stage, of which no value was looked for so far.
+
+        Raises:
+            Refused: A prim has value clips.
+        """
+        for root in (stage.GetPseudoRoot(), *stage.GetPrototypes()):
+            for prim in Usd.PrimRange(root, Usd.PrimAllPrimsPredicate):
+                if prim.HasAuthoredMetadata("clips"):
+                    what = f"{clean(str(prim.GetPath()), _SHOWN)} has value clips, which are other files"
+                    raise Refused(what, flattening(self.path))
+
     def notes(self, stage: Any) -> list[str]:
         """Remarks about files that were not read.
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.maps.apart import Refused, serve
-from irsim.bridges.maps.kinds._usd_layers import Layers, flattening
+from irsim.bridges.maps.kinds._usd_layers import Layers
 from irsim.bridges.maps.kinds._usd_shapes import corners_of, joined
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
@@ -65,9 +65,6 @@ class Collector:
             if hidden or image.GetPurposeAttr().Get() in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy):
                 prims.PruneChildren()
                 continue
-            if prim.HasAuthoredMetadata("clips"):
-                file = Path(prim.GetStage().GetRootLayer().realPath)
-                raise Refused(f"{prim.GetPath()} has value clips, which are other files", flattening(file))
             if prim.IsA(UsdGeom.PointInstancer):
                 prims.PruneChildren()
             yield prim
@@ -157,6 +154,7 @@ def _read(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
     stage = Usd.Stage.Open(str(path))
     if stage is None:
         raise Refused("it is damaged: no stage can be opened from it")
+    layers.check_clips(stage)
     up = str(UsdGeom.GetStageUpAxis(stage)) if request["up"] == "auto" else request["up"].upper()
     scale = float(request["unit"] or UsdGeom.GetStageMetersPerUnit(stage))
     if not 1e-6 <= scale <= 1e6:
