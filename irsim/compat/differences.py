@@ -190,6 +190,7 @@ DIFFERENCES: dict[str, Difference] = {
         "`keep_gap: false` is the law of 2.12, which obstacles keep",
         "of 50 robots that swap places over and over some touched, and under `sfm` nearly all",
     ),
+    "D30": Difference("cells of arrays below 0 are free", "they are unknown", "maps of ROS have -1 for unknown"),
     "format-3": Difference(
         "`obstacle: {…}` joins group 0 and follows its group behavior",
         "the same, with a warning; the map is in no group",
@@ -250,7 +251,7 @@ DIFFERENCES: dict[str, Difference] = {
 KEY_DIFFERENCES: dict[str, str] = {
     "world.name": "D9",
     "world.collision_mode": "D20, D26",
-    "world.obstacle_map": "D15, D16, D17, D24",
+    "world.obstacle_map": "D15, D16, D17, D24, D30",
     "world.mdownsample": "D23",
     "entry.role": "D9",
     "entry.distribution": "D7, format-17",

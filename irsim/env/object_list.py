@@ -15,7 +15,7 @@ from irsim.compat.objects.view import ScriptObject, views
 from irsim.env.policies import drive_again
 from irsim.env.state import EnvState
 from irsim.objects.lifecycle import lone_simulation, move_in, move_out, renumber, restore
-from irsim.objects.shapely_geometry import touching
+from irsim.objects.shapely_geometry import body_parts, is_taken
 from irsim.objects.view import ObjectView
 from irsim.scenario.single_object import read_object
 
@@ -160,7 +160,8 @@ def random_obstacle_position(
         rest = view.state[3:, 0]
         for _ in range(MAX_DRAWS if non_overlapping else 1):
             view.set_state(np.concatenate([env._simulation.rng.uniform(low, high), rest]), init=True)
-            if not any(touching(view, other) for other in standing):
+            pose = view.state[:3, 0].tolist()
+            if not any(is_taken(other, body_parts(view), pose) for other in standing):
                 break
         else:
             if non_overlapping:

@@ -21,7 +21,8 @@ def counts_of(scenario: ResolvedScenario) -> dict[str, int]:
     """Numbers of ``robots``, ``obstacles`` (without map and boundary walls) and ``sensors``.
 
     With boundary walls there is also ``boundary`` (1), and with a map ``map_columns``, ``map_rows`` and
-    ``map_occupied``, the number of occupied cells; the last only if it is the same for every seed.
+    ``map_occupied``, the number of occupied cells; the last only if it is the same for every seed. ``map_unknown`` is
+    the number of unknown cells if there are any.
     """
     robots = len(scenario.robots())
     scenery = [record for record in scenario.objects if record.is_terrain]
@@ -36,6 +37,8 @@ def counts_of(scenario: ResolvedScenario) -> dict[str, int]:
         counts["map_columns"], counts["map_rows"] = scenario.grid.size
         if scenario.grid.occupied >= 0:
             counts["map_occupied"] = scenario.grid.occupied
+        if scenario.grid.unknown:
+            counts["map_unknown"] = scenario.grid.unknown
     return counts
 
 
@@ -53,7 +56,8 @@ def in_words(counts: dict[str, int], *, robots: bool = True, sensors: bool = Tru
     if "map_columns" in counts:
         columns, rows = counts["map_columns"], counts["map_rows"]
         occupied = counts.get("map_occupied")
-        share = "" if occupied is None else f" ({_percent(occupied, columns * rows)} occupied)"
+        unknown = f", {_percent(counts['map_unknown'], columns * rows)} unknown" if "map_unknown" in counts else ""
+        share = "" if occupied is None else f" ({_percent(occupied, columns * rows)} occupied{unknown})"
         parts.append(f"a map of {columns} x {rows} cells{share}")
     if sensors and counts["sensors"]:
         parts.append(_count_of(counts["sensors"], "sensor"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from irsim.objects.view import ObjectView
 if TYPE_CHECKING:
     from irsim.objects.base import SimObject
 
-__all__ = ["body_parts", "from_shapely", "parts_of", "touching", "touching_circle"]
+__all__ = ["body_parts", "from_shapely", "is_taken", "parts_of", "touching"]
 
 
 def touching(a: SimObject, b: SimObject) -> bool:
@@ -24,10 +24,12 @@ def touching(a: SimObject, b: SimObject) -> bool:
     return core.intersects(first, a.state[:3, 0].tolist(), second, b.state[:3, 0].tolist())
 
 
-def touching_circle(a: SimObject, x: float, y: float, radius: float) -> bool:
-    """Return whether a body at its present pose intersects or touches a circle, in the world frame [m]."""
-    circle = core.Circle(radius=radius, center=[x, y])
-    return core.intersects(body_parts(a), a.state[:3, 0].tolist(), [circle], [0.0, 0.0, 0.0])
+def is_taken(a: SimObject, parts: Sequence[core.Part], pose: Sequence[float]) -> bool:
+    """Return whether a body leaves no room for another one at a pose; a map leaves none in unknown cells either."""
+    own, place = body_parts(a), a.state[:3, 0].tolist()
+    if isinstance(own[0], core.GridCells):
+        return core.Terrain((-1e8, -1e8, 1e8, 1e8), [(own, place)]).collides(parts, pose)
+    return core.intersects(own, place, parts, pose)
 
 
 def from_shapely(geometry: Any) -> list[core.Part]:

@@ -87,7 +87,7 @@ class Map(Protocol):
 
     @property
     def occupied(self) -> NDArray[np.bool_]:
-        """(nx, ny) whether a static object touches the cell."""
+        """(nx, ny) whether a static object, or an unknown cell of a map, touches the cell."""
 
     @property
     def origin(self) -> tuple[float, float]:

@@ -83,7 +83,8 @@ class ValidationReport(Result):
     """All findings, errors first."""
     counts: dict[str, int] = Field(default_factory=dict)
     """Number of robots, obstacles (from entries) and sensors of a valid scenario; ``boundary`` if it has walls at the
-    edge; for a map ``map_columns``, ``map_rows`` and, unless the seed decides them, ``map_occupied`` cells."""
+    edge; for a map ``map_columns``, ``map_rows``, unless the seed decides them ``map_occupied`` cells, and
+    ``map_unknown`` ones if there are any."""
     fixes: list[Fix] = Field(default_factory=list)
     """Repairs that were made; ``findings`` has what remains."""
     changes: ScenarioDiff | None = None

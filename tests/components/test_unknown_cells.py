@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
+from hypothesis import strategies as st
 from PIL import Image
 
 import irsim
@@ -22,8 +24,10 @@ from irsim.components.maps._site import Raster
 from irsim.navigation.geodesic import Geodesics
 from irsim.navigation.map import coarsen
 from irsim.objects.describe import describe_scene
+from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.read import read
 from irsim.simulation.simulation import Simulation
+from tests.effort import for_all
 
 STRIP = (4.0, 6.0)
 """x of the unknown strip, which leaves open what lies above y = 8."""
@@ -149,9 +153,19 @@ def test_distances_along_ways_go_round(tmp_path) -> None:
     assert Geodesics(free).length(np.array([2.0, 2.0]), np.array([8.0, 2.0]), 0.2) == pytest.approx(6.0)
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_random_starts_and_goals_keep_out(tmp_path, seed) -> None:
+def outside(place: Any, radius: float) -> bool:
+    """Whether a disc at a place keeps out of the strip."""
+    return bool(np.hypot(max(STRIP[0] - place[0], place[0] - STRIP[1], 0.0), max(place[1] - 8.0, 0.0)) >= radius - 1e-9)
+
+
+@for_all(40, seed=st.integers(0, 2**31))
+def test_random_starts_and_goals_keep_out(tmp_path_factory, seed) -> None:
     crowd = """robot:
+  - number: 8
+    distribution: {name: square_crossing, width: 7, height: 9, center: [4.5, 5]}
+    kinematics: {name: omni}
+    shape: {name: circle, radius: 0.2}
+    behavior: {name: dash}
   - number: 12
     distribution: {name: random, range_low: [0, 0, 0], range_high: [9, 10, 6]}
     kinematics: {name: omni}
@@ -164,12 +178,38 @@ obstacle:
     shape: {name: circle, radius: 0.2}
     behavior: {name: dash, wander: true, range_low: [0, 0, -3], range_high: [9, 10, 3]}
 """
-    env = irsim.make(write_map(tmp_path, crowd), display=False, seed=seed)
-    for _ in range(3):
-        places = [place for one in env.objects[:16] for place in (one.state[:2, 0], one.goal[:2, 0])]
-        for x, y in places:
-            assert np.hypot(max(STRIP[0] - x, x - STRIP[1], 0.0), max(y - 8.0, 0.0)) >= 0.2 - 1e-9
+    env = irsim.make(write_map(tmp_path_factory.mktemp("map"), crowd), display=False, seed=seed)
+    for _ in range(2):
+        for one in env.objects[:24]:
+            assert outside(one.state[:2, 0], 0.2)
+            assert outside(one.goal[:2, 0], 0.2)
         env.reset()
+
+
+def test_starts_that_spread_keep_out(tmp_path) -> None:
+    scenario = read(write_map(tmp_path, robot(start="[3.6, 2]"))).scenario
+    spread = perturbed(scenario, read_perturbations("position=1.0"))
+    starts = np.array([Simulation(spread, [seed]).pose[0, :2] for seed in range(20)])
+    assert np.ptp(starts[:, 0]) > 0.5
+    assert all(outside(place, 0.2) for place in starts)
+
+
+def test_places_that_scripts_draw_keep_out(tmp_path) -> None:
+    obstacle = "obstacle: {number: 3, shape: {name: circle, radius: 0.2}, state: [1, 9, 0]}\n"
+    env = irsim.make(write_map(tmp_path, robot() + obstacle), display=False, seed=1)
+    for _ in range(10):
+        env.random_obstacle_position([0, 0, 0], [9, 10, 3], non_overlapping=True)
+        env.robot.set_random_goal(
+            env.obstacle_list, free=True, goal_check_radius=0.2, range_limits=[[0, 0, 0], [9, 9, 3]]
+        )
+        assert all(outside(one.state[:2, 0], 0.2) for one in env.obstacle_list if one.shape == "circle")
+        assert outside(env.robot.goal[:2, 0], 0.2)
+
+
+def test_the_summary_says_how_much_is_unknown(tmp_path) -> None:
+    report = validate(write_map(tmp_path, robot()))
+    assert report.counts["map_unknown"] == 1600
+    assert "(10 % occupied, 16 % unknown)" in report.summary
 
 
 def test_a_block_is_occupied_or_unknown_before_it_is_free() -> None:
@@ -222,3 +262,15 @@ def test_pictures_show_them_in_grey(tmp_path) -> None:
     pixels = np.asarray(Image.open(tmp_path / "look.png").convert("L")).astype(int)
     grey = ((pixels > 190) & (pixels < 220)).mean() / (pixels < 40).mean()
     assert 1.3 < grey < 1.7, "1.6 times as many cells are unknown as occupied; axes are dark, too"
+
+
+def test_arrays_of_scripts_may_have_unknown_cells() -> None:
+    values = np.zeros((20, 20))
+    values[8:12, :16] = -1
+    values[19] = 100
+    data = {"world": {"width": 10, "height": 10, "obstacle_map": values}, "robot": [{"state": [1, 1, 0]}]}
+    env = irsim.Env(read(data).scenario, headless=True)
+    cells = env.scenario.grid.cells
+    assert (cells.count, int(cells.unknown.sum())) == (20, 64)
+    assert env.get_map(0.5).is_collision(shapely.Point(5, 1))
+    assert not env.get_map(0.5).is_collision(shapely.Point(5, 9))

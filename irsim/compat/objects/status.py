@@ -12,7 +12,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.objects.base import SimObject, column
-from irsim.objects.shapely_geometry import touching, touching_circle
+from irsim.objects.shapely_geometry import is_taken, touching
 from irsim.objects.view import ObjectView
 
 __all__ = ["OldStatus"]
@@ -108,8 +108,8 @@ class OldStatus(ObjectView):
         for _ in range(max(1, len(self.goals))):
             for _ in range(max(1, max_attempts)):
                 drawn = self._simulation.rng.uniform(*bounds)
-                x, y = drawn[:2].tolist()
-                if not free or not any(touching_circle(o, x, y, goal_check_radius) for o in obstacles):
+                circle = [core.Circle(radius=goal_check_radius, center=drawn[:2].tolist())]
+                if not free or not any(is_taken(one, circle, [0.0, 0.0, 0.0]) for one in obstacles):
                     break
             goals.append(drawn.tolist())
         self.set_goal(goals, init)

@@ -94,9 +94,9 @@ class MapGrid:
         return self.cells.count if self.cells is not None else -1
 
     @property
-    def has_unknown(self) -> bool:
-        """Whether planners avoid cells that are not occupied, because the map does not know them to be free."""
-        return self.cells is not None and self.cells.closed_count > self.cells.count
+    def unknown(self) -> int:
+        """Number of cells that planners avoid although they are not occupied, as the map does not know them."""
+        return 0 if self.cells is None else self.cells.closed_count - self.cells.count
 
     def values(self) -> Floats:
         """(nx, ny) occupancies, 0 to 100, -1 where unknown.

@@ -84,14 +84,16 @@ def _check_unknown(context: Context, bodies: list[SizedBody]) -> Iterator[Findin
     """Report what starts in unknown cells of the map, from where no planner finds a way."""
     terrain = [body for body in bodies if body.record.is_map]
     grid = context.resolved.grid
-    if grid is None or not grid.has_unknown or not terrain:
+    if grid is None or not grid.unknown or not terrain:
         return
     cells = core.Terrain(FAR, [(terrain[0].shape.parts, [0.0, 0.0, 0.0])])
     known = set[Path]()
     for body in bodies:
         mover = body.record
+        if not _matters(mover) or mover.is_terrain or len(known) >= _MAX_REPORTED:
+            continue
         where = context.entry_path(mover, "state") if context.is_given(mover, "state") else mover.path
-        if not _matters(mover) or mover.is_terrain or where in known or len(known) >= _MAX_REPORTED:
+        if where in known:
             continue
         pose = mover.state[:3]
         if core.intersects(body.shape.parts, pose, terrain[0].shape.parts, [0.0, 0.0, 0.0]):

@@ -129,4 +129,4 @@ def _blocker(context: Context, scene: Scene, mover: Mover, goal: list[float], ra
             kinds = {"map": "the map", "walls": "the wall around the world"}
             return kinds.get(record.shape.name, f"'{record.name}'")
     grid = context.resolved.grid
-    return "an unknown part of the map" if grid is not None and grid.has_unknown else "an obstacle"
+    return "an unknown part of the map" if grid is not None and grid.unknown else "an obstacle"

@@ -75,7 +75,7 @@ class MapPart(PartOptions):
     """A square picture around the robot: 1 where a static object is, 0 where none is.
 
     Row i of `cells` x `cells` numbers goes along x of the frame, column j along y. A cell is 1 if any point in it is
-    occupied; the points are so dense that they hit every cell of the world's map.
+    occupied or unknown; the points are so dense that they hit every cell of the world's map.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "map", "cells": 16, "size": 4.0}]}
