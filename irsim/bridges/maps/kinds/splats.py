@@ -66,7 +66,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
         notes.append(f"{plan.too_large:,} splats were left out because they are larger than {wanted.max_size:g} m")
     notes += side_notes(options.resolution, plan.cell)
     grid = Grid(*plan.origin, plan.cell, *plan.occupied.shape)
-    values, regions, kept = _kept(plan, grid, options)
+    values, regions, kept = _kept(plan, grid, options, len(splats))
     areas = [round(float(cells) * grid.resolution**2, 4) for cells in regions[:_MAX_REGIONS]]
     result = Occupancy(values, grid, frame, height, unit, 0, [(height, areas[0], False)], areas, kept, notes=notes)
     result.turn = turn
@@ -112,11 +112,11 @@ def unpacked_splats(path: Path, limits: ImportLimits) -> Splats:
     )  # whose y and z point backwards
 
 
-def _kept(plan: Plan, grid: Grid, options: ImportOptions) -> tuple[Floats, list[int], int]:
+def _kept(plan: Plan, grid: Grid, options: ImportOptions, count: int) -> tuple[Floats, list[int], int]:
     """Values of the cells, number of cells of each connected part of the floor, and the part that is free."""
     numbers, sizes = masked_regions(~plan.occupied & ~plan.unknown)
     if not len(sizes) or sizes[0] * grid.resolution**2 < _SMALLEST_AREA_M2:
-        what = f"it has no connected floor of {_SMALLEST_AREA_M2:g} m²"
+        what = f"its {count:,} splats show no connected floor of {_SMALLEST_AREA_M2:g} m²"
         fix = "check which axis points up (--up y, z or -y), --height of the floor, --meters-per-unit and --climb"
         raise BridgeError("bridge-file", what, fix)
     kept = 0
