@@ -8,9 +8,11 @@ import os
 import select
 import sys
 import tokenize
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from types import ModuleType
 
-__all__ = ["log_to_stderr"]
+__all__ = ["log_to_stderr", "without_rich"]
 
 _STDERR = 2
 _MOST = 4000
@@ -21,6 +23,20 @@ def log_to_stderr() -> None:
     """Send warnings and errors of all libraries to standard error, in place of what they would set up."""
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s", handlers=[_Plain()], force=True)
     linecache.getlines(tokenize.__file__)  # everything that a traceback imports, while there are descriptors
+
+
+@contextmanager
+def without_rich() -> Iterator[None]:
+    """Have the SDK find no Rich in the block: its log would import that, 57 modules, and is not used."""
+    if "rich" in sys.modules:
+        yield
+        return
+    modules: dict[str, ModuleType | None] = sys.modules  # type: ignore[assignment]  # None: there is no such module
+    modules["rich"] = None
+    try:
+        yield
+    finally:
+        del modules["rich"]
 
 
 class _Plain(logging.Handler):

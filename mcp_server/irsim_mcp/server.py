@@ -23,6 +23,7 @@ from irsim_mcp.answers import failure
 from irsim_mcp.call_log import CallLog
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
+from irsim_mcp.log import without_rich
 from irsim_mcp.presence import Presence
 from irsim_mcp.prompts import add_prompts
 from irsim_mcp.resources import RUN, add_completions, add_docs, add_resources, add_run_resources, media_type, replay_app
@@ -163,16 +164,17 @@ def build_server(
     caching["resources/read"] = CacheHint(
         ttl_ms=_MINUTE_MS, scope="private"
     )  # recorded runs change while they are simulated
-    server = IrsimServer(
-        "irsim",
-        title="irsim: 2D robot navigation",
-        version=__version__,
-        instructions=_INSTRUCTIONS.format(workspace=clean(folder.root, 300), saving=_SAVING[writing]),
-        tools=make_tools(services, writing=writing),
-        cache_hints=caching,
-        extensions=[Skills(), replay_app()],
-        log_level="WARNING",
-    )
+    with without_rich():
+        server = IrsimServer(
+            "irsim",
+            title="irsim: 2D robot navigation",
+            version=__version__,
+            instructions=_INSTRUCTIONS.format(workspace=clean(folder.root, 300), saving=_SAVING[writing]),
+            tools=make_tools(services, writing=writing),
+            cache_hints=caching,
+            extensions=[Skills(), replay_app()],
+            log_level="WARNING",
+        )
     server.calls = calls
     server.presence = Presence(folder)
     add_resources(server, services)

@@ -170,9 +170,11 @@ def image_of(result: CallToolResult) -> ImageContent:
 class Wire:
     """A server process, line by line."""
 
+    program: tuple[str, ...] = ("irsim_mcp",)
+
     def __init__(self, workspace: Path, *options: str, **how: Any) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "irsim_mcp", "--workspace", str(workspace), *options],
+            [sys.executable, "-m", *self.program, "--workspace", str(workspace), *options],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, **how,
         )  # fmt: skip
         self.ready = False
@@ -188,12 +190,16 @@ class Wire:
 
     def call(self, tool: str, number: int = 2, more: dict[str, Any] | None = None, **arguments: Any) -> None:
         """Ask for a call, after the handshake if it is the first one."""
+        self.ask("tools/call", number, name=tool, arguments=arguments, **(more or {}))
+
+    def ask(self, method: str, number: int = 2, **params: Any) -> None:
+        """Send a request, after the handshake if it is the first one."""
         if not self.ready:
             self.send(id=1, method="initialize", params=HANDSHAKE)
             assert self.receive()["id"] == 1
             self.send(method="notifications/initialized")
             self.ready = True
-        self.send(id=number, method="tools/call", params={"name": tool, "arguments": arguments, **(more or {})})
+        self.send(id=number, method=method, params=params)
 
     def start_long_run(self) -> list[int]:
         """Begin a run that takes minutes and wait for its first progress; the ids of the worker processes."""

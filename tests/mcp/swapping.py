@@ -11,12 +11,12 @@ import posix
 import shutil
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-__all__ = ["Double", "Swap", "swapping"]
+__all__ = ["Double", "Swap", "swap_at_each", "swapping"]
 
 
 class Swap:
@@ -57,12 +57,16 @@ class Swap:
 
 
 _EVENTS = ("open", "os.listdir", "os.scandir", "os.mkdir", "os.rename", "os.remove", "os.rmdir", "os.utime", "os.link")
-_active: Swap | None = None
+_OWN = (sys.prefix, sys.base_prefix, str(Path(__file__).parents[2]), "/proc", "/sys")
+"""Where modules are read from, which has nothing to do with the folder."""
+_active: Callable[[], None] | None = None
 _busy = threading.Lock()
 
 
-def _hook(event: str, _: Any) -> None:
-    if _active is not None and event in _EVENTS and _busy.acquire(blocking=False):
+def _hook(event: str, arguments: tuple[Any, ...]) -> None:
+    if _active is None or event not in _EVENTS or str(arguments[0]).startswith(_OWN):
+        return
+    if _busy.acquire(blocking=False):
         try:
             with suppress(OSError):  # the program has made or removed something in its place
                 _active()
@@ -73,6 +77,13 @@ def _hook(event: str, _: Any) -> None:
 @functools.cache
 def _listen() -> None:
     sys.addaudithook(_hook)  # it stays until the process ends
+
+
+def swap_at_each(swap: Callable[[], None]) -> None:
+    """Do something before each of these calls until the process ends."""
+    global _active
+    _listen()
+    _active = swap
 
 
 @contextmanager
