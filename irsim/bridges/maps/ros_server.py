@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.writing import picture_bytes, write_all_or_none
 from irsim.common.arrays import Floats
-from irsim.common.files import check_new, check_suffix, write_new
+from irsim.common.files import check_suffix
 from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of
 from irsim.components.maps._site import OCCUPIED
 from irsim.objects.describe import grid_values
@@ -92,9 +92,8 @@ def export_map(
         what = "mode scale tells unknown cells by opacity, which pictures of the format pgm do not have"
         raise MapFileError("bad-argument", what, "write --image png, or --mode trinary or raw")
     meta = RosMeta(picture.name, side, (*scenario.grid.origin, 0.0), mode=mode)
-    check_new(picture, overwrite=overwrite)
-    write_new(target, meta.as_yaml(), overwrite=overwrite)
-    Image.fromarray(np.ascontiguousarray(pixels_of(values, meta))).save(picture)
+    content = picture_bytes(pixels_of(values, meta), "PNG" if picture.suffix == ".png" else "PPM")
+    write_all_or_none([(target, meta.as_yaml().encode()), (picture, content)], overwrite=overwrite)
     nx, ny = values.shape
     occupied = int((values > OCCUPIED).sum())
     return MapFiles([str(target), str(picture)], nx, ny, side, scenario.grid.origin, occupied)

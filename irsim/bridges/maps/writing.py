@@ -23,7 +23,7 @@ from irsim.common.files import TargetError, check_new, create_bytes, make_folder
 from irsim.components.maps._rosmap import RosMeta, pixels_of
 from irsim.scenario.yaml.modeline import with_modeline
 
-__all__ = ["Trip", "files_of", "suggest_trip", "write_all_or_none"]
+__all__ = ["Trip", "files_of", "picture_bytes", "suggest_trip", "write_all_or_none"]
 
 _CLEARANCES = (0.5, 0.4, 0.3, 0.25, 0.2, 0.15, 0.1, 0.05)
 """Distances from obstacles that are tried [m], the widest first."""
@@ -147,7 +147,7 @@ def files_of(
     pixels = grey if described is None else pixels_of(values, meta)
     contents = [
         (target, with_modeline("\n".join(lines) + "\n", target).encode()),
-        *([(picture, _image(pixels, "PNG"))] if entries is None else []),
+        *([(picture, picture_bytes(pixels, "PNG"))] if entries is None else []),
         (sidecar_path(target), sidecar.as_json().encode()),
     ]
     if described is not None:
@@ -155,7 +155,7 @@ def files_of(
     if ros_map is not None:
         image = ros_map.with_suffix(".pgm")
         meta = replace(meta, image=image.name)
-        contents += [(ros_map, meta.as_yaml().encode()), (image, _image(pixels_of(values, meta), "PPM"))]
+        contents += [(ros_map, meta.as_yaml().encode()), (image, picture_bytes(pixels_of(values, meta), "PPM"))]
     return contents
 
 
@@ -179,7 +179,8 @@ def _time_limit(trip: Trip, extent: float) -> int:
     return math.ceil((30 + (2 * direct + extent) / _SPEED) / 10) * 10
 
 
-def _image(pixels: np.ndarray, kind: str) -> bytes:
+def picture_bytes(pixels: np.ndarray, kind: str) -> bytes:
+    """A picture as a file: ``PNG``, or ``PPM``, which is ``.pgm`` for grey ones."""
     target = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(pixels)).save(target, format=kind, optimize=kind == "PNG")
     return target.getvalue()

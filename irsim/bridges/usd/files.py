@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import shutil
 import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from zipfile import is_zipfile
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.state import WorldState, world_state
 from irsim.common.extras import require
 from irsim.common.files import check_new, check_suffix, replacing
+from irsim.common.text import clean
 from irsim.env import Env
 from irsim.objects.describe import agent_rows, describe_scene
 from irsim.scenario.limits import Limits
@@ -25,6 +28,8 @@ __all__ = ["SUFFIXES", "export_scene", "make_stage", "save_stage"]
 
 SUFFIXES = (".usda", ".usdc", ".usdz")
 """Suffixes of the files that are written."""
+_LEAST_SPACE = 1 << 20
+"""Space below which a disk counts as full, if OpenUSD cannot write to it [bytes]."""
 
 
 def make_stage(
@@ -59,27 +64,32 @@ def make_stage(
 def save_stage(stage: Any, target: Path) -> None:
     """Write a stage to a file that its suffix names the format of.
 
+    OpenUSD does not say that a disk is full, and takes a part of a package for a whole one. So it writes to a folder of
+    its own, from which the file is copied.
+
     Raises:
         BridgeError: OpenUSD cannot write it.
+        OSError: The file cannot be written.
         TargetError: The suffix is none of :data:`SUFFIXES`.
     """
     from pxr import Tf, UsdUtils
 
     check_suffix(target, SUFFIXES)
-    try:
-        if target.suffix.lower() != ".usdz":
-            done = stage.GetRootLayer().Export(str(target))
-        else:
-            with tempfile.TemporaryDirectory() as folder:
-                inner = Path(folder, "scene.usdc")
-                done = stage.GetRootLayer().Export(str(inner))
-                done = done and UsdUtils.CreateNewUsdzPackage(str(inner), str(target))
-    except Tf.ErrorException as error:
-        what = f"OpenUSD cannot write {target.name}: {error}"
-        raise BridgeError("bridge-failed", what, "check permissions and the space left") from None
-    if not done:
-        fix = "check permissions and the space left"
-        raise BridgeError("bridge-failed", f"OpenUSD cannot write {target.name}", fix)
+    suffix = target.suffix.lower()
+    with tempfile.TemporaryDirectory(prefix="irsim-") as folder:
+        written = Path(folder, f"scene{suffix if suffix != '.usdz' else '.usdc'}")
+        try:
+            done = stage.GetRootLayer().Export(str(written))
+            if suffix == ".usdz":
+                inner, written = written, written.with_suffix(suffix)
+                done = done and UsdUtils.CreateNewUsdzPackage(str(inner), str(written)) and is_zipfile(written)
+        except Tf.ErrorException:
+            done = False
+        if not done:
+            code = "disk-full" if shutil.disk_usage(folder).free < _LEAST_SPACE else "bridge-failed"
+            what = f"OpenUSD cannot write {target.name} by way of {clean(tempfile.gettempdir(), 200)}"
+            raise BridgeError(code, what, "check permissions and the space left there")
+        shutil.copyfile(written, target)
 
 
 def export_scene(
