@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import ConfigDict
 
 import irsim
+from irsim.common.text import escape_marks
 from irsim_evals.cases.store import Instance, case_ids, folder
 from irsim_evals.grader.outcome import Record, Verdict
 
@@ -93,7 +94,7 @@ def results_of(trials: Iterable[Trial]) -> Results:
 def write_results(results: Results, path: Path) -> None:
     """Write a file of results."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(results.model_dump_json(indent=1) + "\n", encoding="utf-8")
+    path.write_text(escape_marks(results.model_dump_json(indent=1)) + "\n", encoding="utf-8")
 
 
 def read_results(path: Path) -> Results:

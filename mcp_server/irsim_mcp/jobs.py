@@ -46,6 +46,7 @@ from irsim_mcp.worker import (
     Workers,
     not_started,
     process_options,
+    temporary_files,
     workspace_data,
 )
 
@@ -304,7 +305,10 @@ class _Keeper(threading.Thread):
     def _answer(self) -> dict[str, Any] | None:
         """The answer of the process; None if the job was cancelled."""
         command, options = process_options(self._workspace)
-        child = Child(command, **options)
+        with temporary_files(options):
+            return self._answer_of(Child(command, **options))
+
+    def _answer_of(self, child: Child) -> dict[str, Any] | None:
         until = time.monotonic() + self._seconds
         try:
             child.send(json.dumps(self._work).encode())

@@ -16,10 +16,10 @@ from mcp.server.mcpserver import Context
 from mcp.server.mcpserver.exceptions import ToolError, UnexpectedToolError
 from mcp.server.mcpserver.tools import Tool
 from mcp.server.mcpserver.utilities.func_metadata import FuncMetadata
-from mcp.types import ToolAnnotations
+from mcp.types import CallToolResult, TextContent, ToolAnnotations
 from pydantic import Field, ValidationError
 
-from irsim.common.text import clean
+from irsim.common.text import clean, escape_marks
 from irsim.diagnostics.diagnostic import format_path, suggestion
 from irsim_mcp.answers import failure
 from irsim_mcp.worker import Progress
@@ -59,7 +59,7 @@ class StrictTool(Tool):
         given = {name: _unpack(value, self.parameters["properties"][name]) for name, value in arguments.items()}
         self._check(given)
         try:
-            return await super().run(given, context, convert_result)
+            return _shown_as_text(await super().run(given, context, convert_result))
         except UnexpectedToolError as error:
             what = f"{self.name} failed unexpectedly; the server's log says why"
             crash = failure("internal-error", what, fix="please report it with the arguments of this call")
@@ -133,6 +133,15 @@ def _unpack(value: Any, schema: Mapping[str, Any]) -> Any:
         except (ValueError, RecursionError):
             return value
     return value
+
+
+def _shown_as_text(answer: Any) -> Any:
+    """An answer whose texts have no marks that change the direction of what a reader sees; JSON stays the same."""
+    blocks = answer.content if isinstance(answer, CallToolResult) else answer if isinstance(answer, list) else ()
+    for block in blocks:
+        if isinstance(block, TextContent):
+            block.text = escape_marks(block.text)
+    return answer
 
 
 def _shown(value: Any) -> str:

@@ -7,10 +7,12 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Awaitable, Callable, Mapping
-from contextlib import suppress
+from collections.abc import Awaitable, Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
+from shutil import rmtree
+from tempfile import mkdtemp
 from typing import Any
 
 import anyio
@@ -30,6 +32,7 @@ __all__ = [
     "missing_limits",
     "not_started",
     "process_options",
+    "temporary_files",
     "workspace_data",
 ]
 
@@ -135,6 +138,18 @@ class Workers:
             "cpu": int(seconds + _START_SECONDS) + 2,
         }
         command, options = process_options(self._workspace)
+        with temporary_files(options):
+            return await self._answer_of(command, options, job, seconds, progress)
+
+    async def _answer_of(
+        self,
+        command: list[str],
+        options: dict[str, Any],
+        job: dict[str, Any],
+        seconds: float,
+        progress: Progress | None,
+    ) -> dict[str, Any]:
+        """Start a process, give it a job and wait for its answer."""
         process = await anyio.open_process(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **options)
         reached: tuple[int, int] | None = None
         run: str | None = None
@@ -205,6 +220,17 @@ def process_options(workspace: Workspace) -> tuple[list[str], dict[str, Any]]:
         "env": {name: os.environ[name] for name in _INHERITED if name in os.environ} | _SET,
         "start_new_session": True,
     }
+
+
+@contextmanager
+def temporary_files(options: dict[str, Any]) -> Iterator[None]:
+    """Give a process a folder of its own for temporary files, which is gone with it, even if it is killed."""
+    folder = mkdtemp(prefix="irsim-")
+    options["env"] |= dict.fromkeys(("TMPDIR", "TEMP", "TMP"), folder)
+    try:
+        yield
+    finally:
+        rmtree(folder, ignore_errors=True)
 
 
 def _command() -> list[str]:

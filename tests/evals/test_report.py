@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from irsim.common.text import escape_marks
 from irsim_evals.cases.store import case_of, golds_of
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.grade import grade
@@ -266,3 +267,18 @@ def test_real_answers_are_shown_with_what_was_given() -> None:
     assert "graded with other cases" not in text
     results.cases = "older"
     assert "graded with other cases" in page(content_of(results, pictures=False))
+
+
+def test_names_are_text_in_every_file(tmp_path: Path) -> None:
+    hostile = f"{HOSTILE} $x$ =1+1"
+    folder = written(tmp_path, trial("one", False).model_copy(update={"title": hostile, "arm": hostile}))
+    for file in (tmp_path / "r.json", *folder.glob("*.*")):
+        text = file.read_text(encoding="utf-8")
+        assert escape_marks(text) == text, file.name
+        assert "\x1b" not in text, file.name
+    assert hostile in json.dumps(json.loads((folder / "results.json").read_text()), ensure_ascii=False).replace(
+        "\\u001b", "\x1b"
+    )
+    shown = (folder / "report.md").read_text()
+    assert "<script" not in shown
+    assert not re.search(r"(?<!\\)\$", shown)

@@ -12,6 +12,7 @@ import statistics
 from collections.abc import Sequence
 from typing import Any
 
+from irsim.common.text import escape_marks
 from irsim_evals.report.comparison import Comparison
 from irsim_evals.report.content import Content
 from irsim_evals.report.summary import ArmSummary, Table
@@ -38,7 +39,7 @@ def as_benchmark(content: Content) -> str:
         },
         "notes": [one.sentence for one in content.comparisons],
     }
-    return json.dumps(plain(data), indent=1, ensure_ascii=False) + "\n"
+    return escape_marks(json.dumps(plain(data), indent=1, ensure_ascii=False)) + "\n"
 
 
 def aggregates(content: Content) -> dict[str, Any]:

@@ -99,6 +99,6 @@ def _rows(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 def _safe(text: str, longest: int = _MAX_TEXT) -> str:
     """A text in one line, in which nothing is markup."""
     shown = "".join(" " if c.isspace() else c for c in str(text)[: longest + 1])
-    for sign in "\\`*_[]|~#@":
+    for sign in "\\`*_[]|~#@$":
         shown = shown.replace(sign, f"\\{sign}")
     return clean(shown, 2 * longest).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -51,8 +51,8 @@ def judge(
 ) -> dict[str, Any]:
     """The verdict on one difference, with its numbers; names: behavior → name of the policy in a suite."""
     names = names or {}
-    matches = row["paired"][metric]
-    n, mean, low, high = (matches[key] for key in ("n", "mean", "low", "high"))
+    difference = row["paired"][metric]
+    n, mean, low, high = (difference[key] for key in ("n", "mean", "low", "high"))
     answer = {
         "scenario": row["scenario"],
         "behavior": names.get(row["behavior"], row["behavior"]),

@@ -93,16 +93,16 @@ def main() -> int:
     given = read_arguments()
     try:
         report = irsim.validate(given.scenario, base=given.base, simulate=True, seed=given.seed)
-        matches = report.model_dump(mode="json")
-        matches["findings"] = [{key: finding[key] for key in KEYS} for finding in matches["findings"]]
+        details = report.model_dump(mode="json")
+        details["findings"] = [{key: finding[key] for key in KEYS} for finding in details["findings"]]
         if report.changes is not None:  # facts that only repeat a key are left out
-            matches["changes"]["world"] = [fact for fact in matches["changes"]["world"] or [] if not fact.pop("direct")]
+            details["changes"]["world"] = [fact for fact in details["changes"]["world"] or [] if not fact.pop("direct")]
         answer = {
             "file": report.file,
             "valid": report.valid,
             "summary": report.summary,
             "look_at": find_remarks(report)[:MAX_ENTRIES],
-            **{key: tidy(matches[key]) for key in ("findings", "dry_run", "changes") if matches[key]},
+            **{key: tidy(details[key]) for key in ("findings", "dry_run", "changes") if details[key]},
         }
         if given.picture and report.dry_run is not None:
             answer["picture"] = tidy(draw(given, report.dry_run.seed))

@@ -44,9 +44,9 @@ def test_hidden_nodes_and_instances() -> None:
     assert not len(read(description(nodes=[hidden, {"mesh": 0}])))
     copies = {"mesh": 0, "translation": [0, 0, 5]}
     copies["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}
-    matches = read(description(nodes=[copies]))
-    assert len(matches) == 8
-    np.testing.assert_allclose(matches[::2, 0], CORNERS + np.array([0, 0, 5]))
+    triangles = read(description(nodes=[copies]))
+    assert len(triangles) == 8
+    np.testing.assert_allclose(triangles[::2, 0], CORNERS + np.array([0, 0, 5]))
     with pytest.raises(Refused, match="more than 7 triangles"):
         read(description(nodes=[copies]), most=7)
 
@@ -63,8 +63,8 @@ def test_sparse_and_quantized_values() -> None:
     views = [{"buffer": 1, "byteLength": 16, "byteStride": 4}]
     accessors = [{"bufferView": 0, "componentType": 5120, "type": "VEC3", "count": 4, "normalized": True}]
     packed = np.array([[-127, -127, 0, 0], [127, 0, 0, 0], [0, 127, 0, 0], [-128, 64, 0, 0]], "i1").tobytes()
-    matches = read(description(accessors=accessors, bufferViews=views), packed.ljust(16, b"\0"))
-    assert (matches.min(), matches.max()) == (-1, 1)
+    triangles = read(description(accessors=accessors, bufferViews=views), packed.ljust(16, b"\0"))
+    assert (triangles.min(), triangles.max()) == (-1, 1)
 
 
 @pytest.mark.parametrize("count", [10**12, -1, 5])
