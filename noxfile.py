@@ -56,11 +56,17 @@ DEBIAN_PEERS = (
 )  # fmt: skip
 """Packages of Debian 12 that bridges meet in tests."""
 PYTHON_PEERS = (
+    "dm-control>=1.0.30",
     "drawsvg>=2.4",
+    "geojson>=3",
+    "geopandas>=1",
     "mcap-ros2-support>=0.5",
     "meshoptimizer==0.2.30a0",
     "msgpack>=1",
+    "osmium>=4",
     "pycolmap>=4",
+    "pyogrio>=0.10",
+    "pyproj>=3.6",
     "svgwrite>=1.4",
     "zenoh-ros2-sdk==0.1.8",
 )

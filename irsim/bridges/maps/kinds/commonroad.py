@@ -73,13 +73,16 @@ def _shape(path: Path, shape: ET.Element, name: str) -> Any:
     x, y = (0.0, 0.0) if center is None else (find_number(path, center, "x"), find_number(path, center, "y"))
     if shape.tag == "circle":
         return shapely.Point(x, y).buffer(find_number(path, shape, "radius"), quad_segs=_QUARTER_SEGMENTS)
-    if shape.tag == "rectangle":
-        length, width = find_number(path, shape, "length"), find_number(path, shape, "width")
+    if shape.tag in ("rectangle", "truckShape"):
+        sides = shape.find("truckDims") if shape.tag == "truckShape" else shape
+        sides = shape if sides is None else sides
+        length, width = find_number(path, sides, "length"), find_number(path, sides, "width")
+        x -= find_number(path, shape, "originXShift", 0.0)
         box = shapely.box(x - length / 2, y - width / 2, x + length / 2, y + width / 2)
         return shapely.affinity.rotate(box, find_number(path, shape, "orientation", 0.0), use_radians=True)
     corners = _points(path, shape)
     if shape.tag != "polygon" or len(corners) < 3:
-        raise unusable(path, f"obstacle {name} has a shape other than rectangles, circles and polygons")
+        raise unusable(path, f"obstacle {name} has a shape other than rectangles, circles, polygons and trucks")
     return shapely.make_valid(shapely.Polygon(corners))
 
 
