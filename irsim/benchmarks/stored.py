@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
+from pydantic_core import PydanticSerializationError
 
 from irsim.benchmarks.comparison import benchmark
 from irsim.benchmarks.log import in_order
@@ -233,7 +234,12 @@ def _prepare(plan: Plan, folder: Path, resume: bool) -> None:
     Raises:
         RunError: See :func:`run_plan`.
     """
-    text, known = plan.model_dump_json(indent=1) + "\n", folder / PLAN
+    known = folder / PLAN
+    try:
+        text = plan.model_dump_json(indent=1) + "\n"
+    except PydanticSerializationError:
+        what = "the name of a scenario or policy is not text in UTF-8, so that the benchmark could not be resumed"
+        raise RunError("bad-argument", what, "rename it, or leave out -o") from None
     if not resume and _has_episodes(folder / EPISODES):
         raise RunError("results-exist", f"{folder} holds episodes already", "give --resume, or another folder with -o")
     if known.exists() and (not known.is_file() or known.read_bytes() != text.encode()):

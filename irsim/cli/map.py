@@ -15,6 +15,7 @@ from irsim import api
 from irsim.bridges.maps.importing import import_map
 from irsim.bridges.maps.importing import list_levels as only_list
 from irsim.bridges.maps.ros_server import export_map
+from irsim.cli.findings import import_user_modules
 from irsim.cli.guard import handle_errors
 from irsim.cli.options import File, Imports, Json, Seed
 from irsim.cli.output import console, print_json
@@ -62,7 +63,7 @@ def export(
     json_output: Json = False,
 ) -> None:
     """Write the map of a scenario for the ROS map server: a YAML file and a picture."""
-    api.import_modules(imports or ())
+    import_user_modules(imports)
     resolved, _ = api.read_scenario(scenario, strict=False)
     files = export_map(resolved, out, mode=mode.value, image=image.value, seed=seed, overwrite=force)
     _show(files, json_output)

@@ -13,6 +13,7 @@ from irsim.api.take_snapshot import snapshot
 from irsim.bundled.templates import find, scenario_file
 from irsim.cli.options import Json
 from irsim.cli.output import console
+from irsim.common.files import check_suffix
 from irsim.graphics.encoding.contact_sheet import contact_sheet
 
 __all__ = ["templates"]
@@ -32,6 +33,8 @@ def templates(
     json_output: Json = False,
 ) -> None:
     """List the bundled scenarios to start from."""
+    if sheet is not None:
+        check_suffix(sheet, (".png", ".jpg", ".webp"))
     matching = find(words or ())
     if sheet is not None:
         steps = [(template.name, scenario_file(template.name)) for template in matching]

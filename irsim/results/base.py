@@ -7,9 +7,10 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema
+from pydantic_core import CoreSchema, PydanticSerializationError
 
 from irsim.common.field_docs import field_docs
+from irsim.common.json_output import json_bytes
 
 __all__ = ["Result"]
 
@@ -40,7 +41,11 @@ class Result(BaseModel):
         Args:
             **options: Options of pydantic, such as ``indent``.
         """
-        text = super().model_dump_json(**options)
+        try:
+            text = super().model_dump_json(**options)
+        except PydanticSerializationError:  # the name of a file is no text
+            indent = options.pop("indent", None)
+            text = json_bytes(self.model_dump(**options), indent=indent, inf_nan_mode="null").decode()
         return text if text.isprintable() else _UNUSUAL.sub(_escaped, text)
 
     @classmethod

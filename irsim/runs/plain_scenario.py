@@ -7,8 +7,8 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
-from pydantic_core import to_json
 
+from irsim.common.json_output import json_bytes
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def plain_scenario(simulation: Simulation) -> bytes:
         "objects": objects,
         "options": options,
     }
-    return to_json(whole, inf_nan_mode="strings", serialize_unknown=True)
+    return json_bytes(whole, inf_nan_mode="strings", serialize_unknown=True)
 
 
 def with_options(data: Any) -> dict[str, Any]:

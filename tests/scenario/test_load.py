@@ -193,6 +193,8 @@ def test_limits() -> None:
     tight = Limits(bytes=100, events=20, expansion=10, depth=3)
     assert load_text("a" * 101, limits=tight).problems[0].code == "file-too-large"
     assert load_text("[1,2,3,4,5,6,7,8,9,1,2,3,4,5,6,7,8]", limits=tight).problems[0].code == "too-many-events"
+    assert load_text("{a: 1, b: {c: 1}, d: 1, e: 1}", limits=Limits(keys=3)).problems[0].code == "too-many-events"
+    assert not load_text("{a: 1, b: {c: 1}, d: 1}", limits=Limits(keys=3)).problems
     assert load_text("[[[[1]]]]", limits=tight).problems[0].code == "too-deep"
     assert load_text("a: &a [1, 2, 3, 4]\nb: [*a, *a, *a]\n", limits=tight).problems[0].code == "alias-expansion"
     assert load_text("a: &a [[1]]\nb: [*a]\n", limits=tight).problems[0].code == "too-deep"

@@ -204,6 +204,8 @@ def _target(name: str | Path, where: str, limits: ImportLimits) -> Path:
 
 def _confined(name: str | Path, where: str, limits: ImportLimits) -> Path:
     """The file of a name, which must not lead out of the folder of the limits."""
+    if "\0" in str(name):
+        raise BridgeError("bridge-file", f"'{clean(str(name), 200)}' is no name of a file", "name a file", where=where)
     if limits.root is None:
         return Path(name)
     wrong = why_outside(str(name), Path(limits.root))

@@ -234,6 +234,8 @@ class _Composer:
                 "bad-key", "a key must be text, got a list or mapping", event, fix="quote it if it is meant as text"
             )
             key = str(key)[:40]
+        elif len(frame.value) >= self.limits.keys:
+            self._stop("too-many-events", f"more than {self.limits.keys:,} keys in one mapping", event)
         elif key in frame.value:
             self._problem(
                 "duplicate-key",

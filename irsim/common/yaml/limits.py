@@ -16,6 +16,7 @@ class YamlLimits:
         events: YAML events (scalars, brackets) of the file itself.
         expansion: Events that aliases and merge keys add when they are written out.
         aliases: Aliases, whatever they refer to.
+        keys: Keys of one mapping.
         depth: Nesting of lists and mappings, aliases written out.
         problems: Diagnostics reported for one file.
     """
@@ -24,5 +25,6 @@ class YamlLimits:
     events: int = 2_000_000
     expansion: int = 500_000
     aliases: int = 1_000_000
+    keys: int = 10_000
     depth: int = 64
     problems: int = 100

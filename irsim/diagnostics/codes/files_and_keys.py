@@ -70,7 +70,10 @@ FILE_AND_YAML: dict[str, Code] = {
         "aliases expand to too much",
         "Aliases (*name) and merge keys (<<) repeat so much that the scenario would not fit into memory.",
     ),
-    "too-many-events": Code("too many values", "The file has more values and brackets than the limit of 2 million."),
+    "too-many-events": Code(
+        "too many values",
+        "The file has more values and brackets than the limit of 2 million, or more than 10,000 keys in a mapping.",
+    ),
     "too-deep": Code("nested too deeply", "Lists and mappings are nested more than 64 levels deep."),
     "yaml-number-text": Code(
         "number that YAML 1.1 reads as text",
