@@ -7,10 +7,10 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, PydanticSerializationError
+from pydantic_core import CoreSchema, PydanticSerializationError, to_json
 
 from irsim.common.field_docs import field_docs
-from irsim.common.json_output import json_bytes
+from irsim.common.json_output import encodable
 
 __all__ = ["Result"]
 
@@ -45,7 +45,7 @@ class Result(BaseModel):
             text = super().model_dump_json(**options)
         except PydanticSerializationError:  # the name of a file is no text
             indent = options.pop("indent", None)
-            text = json_bytes(self.model_dump(**options), indent=indent, inf_nan_mode="null").decode()
+            text = to_json(encodable(self.model_dump(**options)), indent=indent, inf_nan_mode="null").decode()
         return text if text.isprintable() else _UNUSUAL.sub(_escaped, text)
 
     @classmethod

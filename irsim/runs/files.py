@@ -9,7 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pydantic import BaseModel
+from pydantic_core import PydanticSerializationError, to_json
+
 from irsim.common.files import Buffer, code_of, create_bytes, replace_bytes, write_all
+from irsim.common.json_output import encodable
 from irsim.common.records import MAX_RECORD_BYTES, ContentError, read_json, read_text
 from irsim.diagnostics.errors import CodedError
 
@@ -22,6 +26,7 @@ __all__ = [
     "json_of",
     "lock_file",
     "plain_file",
+    "record_json",
     "refusal",
     "replace_file",
     "text_of",
@@ -61,6 +66,19 @@ def text_of(folder: Path, name: str) -> str | None:
         return None
     except ContentError as error:
         raise unreadable(f"'{name}' of run {folder.name} cannot be read: {error.message}") from None
+
+
+def record_json(data: Any, **options: Any) -> bytes:
+    """JSON of a file of a run.
+
+    Args:
+        data: Plain data, or a model.
+        **options: Options of ``pydantic_core.to_json``, such as ``indent``.
+    """
+    try:
+        return to_json(data, **options)
+    except PydanticSerializationError:  # the name of a file is no text
+        return to_json(encodable(data.model_dump() if isinstance(data, BaseModel) else data), **options)
 
 
 def json_of(folder: Path, name: str) -> Any:

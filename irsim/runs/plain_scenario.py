@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
-from irsim.common.json_output import json_bytes
+from irsim.runs.files import record_json
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def plain_scenario(simulation: Simulation) -> bytes:
         "objects": objects,
         "options": options,
     }
-    return json_bytes(whole, inf_nan_mode="strings", serialize_unknown=True)
+    return record_json(whole, inf_nan_mode="strings", serialize_unknown=True)
 
 
 def with_options(data: Any) -> dict[str, Any]:

@@ -20,9 +20,8 @@ from pydantic_core import to_json
 import irsim._core as core
 from irsim.common.files import Buffer
 from irsim.common.installed import version
-from irsim.common.json_output import json_bytes
 from irsim.runs.chunks import PieceWriter, pack_chunk
-from irsim.runs.files import Claim, RunError, claim, create_file, digest_of, replace_file
+from irsim.runs.files import Claim, RunError, claim, create_file, digest_of, record_json, replace_file
 from irsim.runs.plain_scenario import plain_scenario
 from irsim.runs.store import (
     FILES,
@@ -202,7 +201,7 @@ class Recorder:
         result.notes = [*omission_notes(self._meta, result.steps), *result.notes]
         result.run_id = self.run_id
         result.artifacts = {name: self._path(name) for name in FILES}
-        self._write(RESULT, json_bytes(result, indent=1))
+        self._write(RESULT, record_json(result, indent=1))
         mark_used(self.folder)
         self._stop()
 
@@ -299,7 +298,7 @@ class Recorder:
 
     def _write_meta(self, **changes: Any) -> None:
         self._meta.update(changes)
-        self._write(META, json_bytes(self._meta, indent=1))
+        self._write(META, record_json(self._meta, indent=1))
 
     def _write(self, name: str, *parts: Buffer) -> None:
         replace_file(self._path(name), *parts)

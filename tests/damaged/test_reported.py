@@ -15,8 +15,9 @@ from PIL import Image
 import irsim
 from irsim.benchmarks.log import Log, logged
 from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.importing import import_map
 from irsim.bridges.splats.reading import read_splats
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import ArgumentError, CodedError
 from irsim.policies.networks import open_network
 from irsim.policies.networks.errors import PolicyFileError
 from irsim.results.benchmark import BenchmarkResult
@@ -151,6 +152,14 @@ def test_a_log_of_other_seeds_with_good_digests_is_not_believed(workspace: Path)
         pass
     with pytest.raises(RunError, match="it has seed 2"):
         irsim.benchmark("room.yaml", "dash", seeds=[1], steps=3, log="log.jsonl", resume=True)
+
+
+@pytest.mark.parametrize(("old", "new"), [("0.5", "1.0e+300"), ("[0, 0, 0]", "[1.0e+160, 0, 0]")])
+def test_maps_beyond_all_worlds_are_not_imported(workspace: Path, old: str, new: str) -> None:
+    Image.new("L", (20, 20), 255).save(workspace / "plan.png")
+    (workspace / "map.yaml").write_text(MAP.replace(old, new, 1))
+    with pytest.raises(CodedError, match=r"m wide and begins at|resolution"):
+        import_map("map.yaml", "a.yaml")
 
 
 @pytest.mark.parametrize("wrong", [-1, 10, 10**13])

@@ -14,6 +14,9 @@ from irsim.scenario.locate import why_outside
 
 __all__ = ["KIND"]
 
+_FARTHEST = 1e9
+"""Largest coordinate of a map [m]."""
+
 
 def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     """The map as it is.
@@ -35,6 +38,9 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
         raise MapFileError(problem.code, problem.message, fix) from None
     assert raster.width is not None
     assert raster.origin is not None
+    if not max(abs(raster.origin[0]), abs(raster.origin[1]), raster.width) <= _FARTHEST:
+        what = f"the map is {raster.width:g} m wide and begins at ({raster.origin[0]:g}, {raster.origin[1]:g}) m"
+        raise MapFileError("bridge-file", what, "correct the keys resolution and origin of the file")
     values = raster.values()
     grid = Grid(*raster.origin, raster.width / values.shape[0], *values.shape)
     result = Occupancy(values, grid, "ros", notes=notes, parts=[picture])

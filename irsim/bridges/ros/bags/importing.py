@@ -89,12 +89,13 @@ def map_of_scans(
     box = corners.min(axis=0) - margin, corners.max(axis=0) + margin
     resolution = fitting_side(resolution, *box, MAX_CELLS)
     low = np.floor(box[0] / resolution) * resolution
-    counts = np.ceil((box[1] - low) / resolution).astype(np.int64)
-    if counts.prod() > MAX_CELLS:
-        what = f"the map would have {counts[0]} x {counts[1]} cells"
+    sides = np.ceil((box[1] - low) / resolution)
+    if not sides.prod() <= MAX_CELLS:
+        what = f"the map would have {sides[0]:.0f} x {sides[1]:.0f} cells"
         raise BridgeError(
             "bridge-file", what, f"give a larger cell: --resolution {fitting_side(None, *box, MAX_CELLS):g}"
         )
+    counts = sides.astype(np.int64)
     hits, passes = np.zeros(counts, dtype=np.int64), np.zeros(counts, dtype=np.int64)
     for pose, (points, hit) in zip(poses, ends, strict=True):
         _count(hits, points[hit], low, resolution)
@@ -122,7 +123,8 @@ def _ends(pose: Floats, scan: Scan, reach: float, cleared: float) -> tuple[Float
         reach: How far hits count [m]; a farther one is as nothing.
         cleared: How far beams that hit nothing are known to be free [m].
     """
-    ranges = scan.ranges.astype(np.float64)
+    with np.errstate(invalid="ignore"):  # signalling NaN
+        ranges = scan.ranges.astype(np.float64)
     angles = pose[2] + scan.angle_min + scan.increment * np.arange(len(ranges))
     hit = _is_hit(scan) & (ranges <= reach)
     missed = ~hit & ~np.isnan(ranges) & (ranges >= scan.low)
