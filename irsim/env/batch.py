@@ -15,8 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.arguments import check_whole_number
 from irsim.common.arrays import Floats
 from irsim.compat.objects.view import make_view
+from irsim.diagnostics.errors import InputError
 from irsim.objects.lifecycle import attach_python
 from irsim.policies.behavior import with_policy
 from irsim.policies.catalog import PolicySource, open_policy
@@ -218,20 +220,16 @@ def batch(
         policy: The policy that drives all robots instead of their behaviors; see :func:`irsim.open_policy`.
 
     Raises:
-        ValueError: ``n`` is below 1, or the number of seeds is not ``n``.
+        InputError: ``n`` is below 1, or too many.
+        ValueError: The number of seeds is not ``n``.
         ScenarioError: The file cannot be used.
         PolicyError: The policy cannot drive the robots.
     """
-    if n < 1:
-        raise ValueError(f"a batch has at least one world, not {n}")
     if isinstance(scenario, ResolvedScenario):
         resolved = scenario
     else:
         resolved, _ = open_scenario(scenario, strict=strict)
-    if n * len(resolved.objects) > MAX_BATCH_OBJECTS:
-        raise ValueError(
-            f"{n:,} worlds of {len(resolved.objects):,} objects are more than {MAX_BATCH_OBJECTS:,} objects in all"
-        )
+    n = check_worlds(n, resolved)
     if seeds is None:
         first = resolved.world.seed if resolved.world.seed is not None else fresh_seed()
         seeds = [first + i for i in range(n)]
@@ -239,6 +237,19 @@ def batch(
         raise ValueError(f"{len(seeds)} seeds for {n} worlds")
     driver = None if policy is None else open_policy(policy)
     return Batch(resolved, list(seeds), threads or os.cpu_count() or 1, driver)
+
+
+def check_worlds(n: int, scenario: ResolvedScenario) -> int:
+    """The number of worlds of a batch.
+
+    Raises:
+        InputError: It is not a whole number from 1, or the worlds have more than :data:`MAX_BATCH_OBJECTS` objects.
+    """
+    n, each = check_whole_number("the number of worlds", n, 1), max(1, len(scenario.objects))
+    if n * each > MAX_BATCH_OBJECTS:
+        what = f"{n:,} worlds of {each:,} objects are more than {MAX_BATCH_OBJECTS:,} objects in all"
+        raise InputError(what, f"ask for at most {MAX_BATCH_OBJECTS // each:,} worlds")
+    return n
 
 
 def _remake(kind: type[Batch], made: tuple[Any, ...], data: bytes) -> Batch:

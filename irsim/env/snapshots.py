@@ -21,6 +21,7 @@ __all__ = ["copy_env", "reduce", "restore", "snapshot"]
 _FLAGS = ("pause_flag", "quit_flag", "debug_flag", "reset_flag", "reload_flag", "save_figure_flag", "debug_count")
 _OWN = ("_seed", "_next_seed", "_wanted_seed", "_ended", "_title", "_label", "_written_status", "_limit_warnings")
 _SEEN = ("_events_seen", "_events_logged")
+_OWNER = "an environment"
 _MODES = ("step_mode", "control_mode", "collision_mode")
 
 
@@ -36,7 +37,7 @@ def snapshot(env: EnvState) -> bytes:
     """
     values = {name: getattr(env, name) for name in (*_FLAGS, *_OWN, *_SEEN)}
     modes = {name: getattr(env.world_param, name) for name in _MODES}
-    return dump((values, modes, save_simulation(env._simulation)), env._simulation)
+    return dump((values, modes, save_simulation(env._simulation)), env._simulation, _OWNER)
 
 
 def restore(env: EnvState, data: bytes) -> None:
@@ -45,7 +46,7 @@ def restore(env: EnvState, data: bytes) -> None:
     Raises:
         InputError: It is of another scenario, or objects were added or deleted in between.
     """
-    values, modes, simulation = load(data, env._simulation)
+    values, modes, simulation = load(data, env._simulation, _OWNER)
     load_simulation(env._simulation, simulation)
     for name, value in values.items():
         setattr(env, name, copy.copy(value))

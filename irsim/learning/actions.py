@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.arguments import as_given
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError
 
@@ -26,15 +27,16 @@ def read_actions(actions: Any, choices: Sequence[Any] | None, slots: int, width:
     Raises:
         ArgumentError: The actions have another shape, or are not finite.
     """
+    given = as_array(actions)
     if choices is None:
-        numbers = np.asarray(actions, dtype=np.float64)
+        numbers = given.astype(np.float64, copy=False)
         if numbers.shape != (slots, width):
             what = f"actions have the shape {numbers.shape}, not {(slots, width)}"
             raise ArgumentError(what, "give one row of numbers for each learner of each world")
         if not np.isfinite(numbers).all():
             raise ArgumentError("an action is not finite", "give numbers from -1 to 1")
         return numbers
-    number = np.asarray(actions)
+    number = given
     if number.shape != (slots,) or number.dtype.kind not in "iu":
         raise ArgumentError("actions are numbers of choices, one whole number for each learner", "give integers")
     if ((number < 0) | (number >= len(choices))).any():
@@ -42,6 +44,21 @@ def read_actions(actions: Any, choices: Sequence[Any] | None, slots: int, width:
     numbers = np.zeros((slots, len(choices)))
     numbers[np.arange(slots), number] = 1.0
     return numbers
+
+
+def as_array(actions: Any) -> NDArray[Any]:
+    """Actions as an array of numbers.
+
+    Raises:
+        ArgumentError: They are something else.
+    """
+    try:
+        given = np.asarray(actions)
+    except ValueError:  # rows of different lengths
+        given = np.asarray(None)
+    if given.dtype.kind not in "fiub":
+        raise ArgumentError(f"the action is {as_given(actions)}", "give an array of numbers")
+    return given
 
 
 class Latency:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from irsim.common.arguments import as_given
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.actions import as_array
 from irsim.learning.pictures import Camera
 from irsim.learning.snapshots import Snapshots
 from irsim.learning.step import Result
@@ -93,11 +94,12 @@ class Env(Snapshots, gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[m
 
         Raises:
             ArgumentError: The action has another shape, or is not finite.
-            ResetNeeded: The episode is over.
+            ResetNeeded: The episode is over, or none has begun.
         """
-        if self._over:
-            raise gymnasium.error.ResetNeeded(f"the episode is over; {RESET_FIX}")
-        result = self.worlds.step(np.asarray(action)[None])
+        if self._over or self._fresh:
+            what = "no episode has begun" if self._fresh else "the episode is over"
+            raise gymnasium.error.ResetNeeded(f"{what}; {RESET_FIX}")
+        result = self.worlds.step(as_array(action)[None])
         self._show()
         info = facts(result, 0) | drawn_facts(self.worlds)
         terminated, truncated = bool(result.terminated[0, 0]), bool(result.truncated[0, 0])

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.extras import require
+from irsim.learning.actions import as_array
 from irsim.learning.gym_env import (
     RENDER_MODES,
     RESET_FIX,
@@ -125,10 +126,10 @@ class ParallelEnv(Snapshots, pettingzoo.ParallelEnv[Agent, NDArray[np.float32], 
         """
         if not self.agents:
             raise ResetNeeded(f"no episode is under way; {RESET_FIX}")
-        idle = np.zeros_like(np.asarray(actions[self.agents[0]]))
+        idle = np.zeros_like(as_array(actions[self.agents[0]]))
         acting = set(self.agents)
         given = [actions[agent] if agent in acting else idle for agent in self.possible_agents]
-        result = self.worlds.step(np.stack([np.asarray(action) for action in given]))
+        result = self.worlds.step(as_array([as_array(action) for action in given]))
         seen = self.worlds.observe()
         slots = {agent: self._slots[agent] for agent in self.agents}
         reward, ended, cut = (a[0].tolist() for a in (result.reward, result.terminated, result.truncated))

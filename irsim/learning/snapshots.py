@@ -30,7 +30,7 @@ class Snapshots:
             InputError: Code in Python keeps something that pickle cannot store, or there are several workers.
         """
         own = {name: getattr(self, name) for name in _KEPT if name in vars(self)}
-        return dump((own, self.worlds.snapshot()), self.worlds.simulation)
+        return dump((own, self.worlds.snapshot()), self.worlds.simulation, type(self).__name__)
 
     def restore(self, data: bytes) -> None:
         """Return to the state of a snapshot.
@@ -38,6 +38,6 @@ class Snapshots:
         Raises:
             InputError: It is of another task, or of another number of worlds.
         """
-        own, worlds = load(data, self.worlds.simulation)
+        own, worlds = load(data, self.worlds.simulation, type(self).__name__)
         self.worlds.restore(worlds)
         vars(self).update(own)

@@ -8,10 +8,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.arguments import as_given
+from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
-from irsim.learning.gym_env import RENDER_MODES, action_space, check_render_mode, frames_per_second, observation_space
+from irsim.env.batch import check_worlds
+from irsim.learning.gym_env import (
+    RENDER_MODES,
+    RESET_FIX,
+    action_space,
+    check_render_mode,
+    frames_per_second,
+    observation_space,
+)
 from irsim.learning.pictures import Camera
 from irsim.learning.snapshots import Snapshots
 from irsim.learning.step import Result
@@ -141,9 +149,11 @@ class VectorEnv(Snapshots, GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[
 
         Raises:
             ArgumentError: The actions have another shape, or are not finite.
-            ResetNeeded: A world is over, and ``autoreset_mode`` is ``Disabled``.
+            ResetNeeded: No episode has begun; or a world is over, and ``autoreset_mode`` is ``Disabled``.
         """
         worlds, before = self.worlds, self._over
+        if self._fresh:
+            raise ResetNeeded(f"no episode has begun; {RESET_FIX}")
         if self._mode is AutoresetMode.DISABLED and before.any():
             raise ResetNeeded('a world is over; start its next episode: reset(options={"reset_mask": mask})')
         step = worlds.advance(worlds.read(actions), _RESETS[self._mode], out=self._observed)
@@ -212,12 +222,14 @@ class VectorEnv(Snapshots, GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[
 
 def _worlds(task: TaskSource, slots: int, seed: int | None, threads: int, workers: int) -> AnyWorlds:
     one = Worlds(task, 1, seed=seed)
-    if slots < 1 or slots % one.learners:
+    if check_whole_number("num_envs", slots, 1) % one.learners:
         what = f"num_envs is {slots}, and each world has {one.learners} learners"
         raise ArgumentError(what, f"give a multiple of {one.learners}")
     if slots == one.learners:
         return one
-    return open_worlds(task, slots // one.learners, seed=seed, threads=threads, workers=workers)
+    return open_worlds(
+        task, check_worlds(slots // one.learners, one.scenario), seed=seed, threads=threads, workers=workers
+    )
 
 
 def _mode(given: str | AutoresetMode) -> AutoresetMode:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError, PlacementError
-from irsim.env.batch import Batch
+from irsim.env.batch import Batch, check_worlds
 from irsim.learning.actions import Latency, read_actions
 from irsim.learning.draws import Draws, check_observed
 from irsim.learning.observing import Eyes
@@ -23,6 +23,7 @@ from irsim.learning.tasks.team import team_of
 from irsim.learning.terms import PythonTerms, weighted_terms
 from irsim.policies.networks.output import Present, are_finite, decide
 from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.simulation.random_streams import check_seed
 from irsim.simulation.roles import kinds_of
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.snapshot import dump, load, load_simulation, save_simulation
@@ -35,6 +36,7 @@ _FLAGS = ("taking_part", "ended", "arrived", "collided", "over", "horizon")
 """Arrays of the core about the present episodes of learners."""
 _OWN = ("_begun", "_low", "_high", "_bounded", "present", "level", "drawn", "_latency")
 """Attributes of worlds that change in a step or a reset."""
+_OWNER = "learners"
 _TRIES = 100
 """Number of scenes that are drawn for a world before it is an error that none has room for all objects."""
 
@@ -73,12 +75,14 @@ class Worlds:
         self, task: TaskSource, n: int = 1, *, seed: int | None = None, threads: int = 1, level: int | None = None
     ) -> None:
         self.task, folder = open_task(task)
-        self._made = os.path.abspath(task) if isinstance(task, str) and os.path.isfile(task) else task, n
         scene = open_scene(self.task, folder)
+        n = check_worlds(n, scene.scenario)
+        self._made = os.path.abspath(task) if isinstance(task, str) and os.path.isfile(task) else task, n
         check_observed(self.task, scene)
         self.scenario: ResolvedScenario = scene.scenario
         self.n = n
-        first = self.task.seeds.train if seed is None else seed
+        first = self.task.seeds.train if seed is None else check_seed(seed)
+        check_seed(first + n - 1)
         seeds = [first + i for i in range(n)]
         self._batch = Batch(self.scenario, seeds, threads, crowded=True)  # reset() below skips such scenes
         self._simulation = simulation = self._batch.simulation
@@ -128,11 +132,13 @@ class Worlds:
 
         Raises:
             PlacementError: No scene of a world has room for all objects.
+        ValueError: A seed is negative or has more than 64 bits.
         """
         chosen = np.ones(self.n, dtype=bool) if mask is None else np.array(mask, dtype=bool)
         if chosen.shape != (self.n,):
             raise ArgumentError(f"a mask of {self.n} worlds has the shape ({self.n},), not {chosen.shape}", "give one")
         if seeds is not None:
+            seeds = [check_seed(seed) for seed in seeds]
             self._simulation.reseed(np.asarray(seeds, dtype=np.uint64), chosen)
             self._begun[chosen] = False
         for next_scene in (False, True):
@@ -230,7 +236,7 @@ class Worlds:
         """
         flags = {name: getattr(self._stepper, name) for name in _FLAGS}
         own = {name: getattr(self, name) for name in _OWN}
-        return dump((flags, own, save_simulation(self._simulation)), self._simulation)
+        return dump((flags, own, save_simulation(self._simulation)), self._simulation, _OWNER)
 
     def restore(self, data: bytes) -> None:
         """Return to the state of a snapshot, which was taken of as many worlds of the same task.
@@ -238,7 +244,7 @@ class Worlds:
         Raises:
             InputError: It is of other worlds.
         """
-        flags, own, simulation = load(data, self._simulation)
+        flags, own, simulation = load(data, self._simulation, _OWNER)
         load_simulation(self._simulation, simulation)
         for name, values in flags.items():
             getattr(self._stepper, name)[...] = values

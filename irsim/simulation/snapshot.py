@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["dump", "load", "load_simulation", "save_simulation"]
 
 _PARTS = "parts"
+_OWNER = "worlds"
 
 
 def save_simulation(simulation: Simulation) -> bytes:
@@ -33,7 +34,7 @@ def save_simulation(simulation: Simulation) -> bytes:
         _PARTS: [part.memory() for part in _parts(simulation)],
         "state": simulation.state.save(),
     }
-    return dump(memory, simulation)
+    return dump(memory, simulation, _OWNER)
 
 
 def load_simulation(simulation: Simulation, data: bytes) -> None:
@@ -42,7 +43,7 @@ def load_simulation(simulation: Simulation, data: bytes) -> None:
     Raises:
         InputError: It was another simulation: other objects, another number of worlds, another scenario.
     """
-    memory = load(data, simulation)
+    memory = load(data, simulation, _OWNER)
     parts = list(_parts(simulation))
     if memory["ids"] != simulation.ids.tolist() or len(memory[_PARTS]) != len(parts):
         raise _of_another()
@@ -74,24 +75,42 @@ def _parts(simulation: Simulation) -> Iterator[Any]:
                 yield from (sensor for sensor in view.sensors if hasattr(type(sensor), "recall"))
 
 
-def dump(value: Any, simulation: Simulation) -> bytes:
+def dump(value: Any, simulation: Simulation, owner: str) -> bytes:
     """Pickle a value; the simulation, its objects and its scenario are named, not copied.
+
+    Args:
+        value: The value.
+        simulation: The simulation that it is a part of.
+        owner: What has this memory, in words; :func:`load` refuses the memory of other things.
 
     Raises:
         InputError: Something in it cannot be pickled.
     """
     out = io.BytesIO()
     try:
-        _Pickler(out, simulation).dump(value)
+        _Pickler(out, simulation).dump((owner, value))
     except (AttributeError, TypeError, pickle.PicklingError) as error:
         what = f"the memory of code in Python cannot be saved: {error}"
         raise InputError(what, "keep in behaviors, policies and sensors only what pickle can store") from error
     return out.getvalue()
 
 
-def load(data: bytes, simulation: Simulation) -> Any:
-    """The value that :func:`dump` has pickled, with the objects of this simulation."""
-    return _Unpickler(io.BytesIO(data), simulation).load()
+def load(data: bytes, simulation: Simulation, owner: str) -> Any:
+    """The value that :func:`dump` has pickled, with the objects of this simulation.
+
+    Raises:
+        InputError: It is no such value.
+    """
+    fix = "give what snapshot() has returned"
+    try:
+        found, value = _Unpickler(io.BytesIO(data), simulation).load()
+    except InputError:
+        raise
+    except Exception as error:  # damaged pickles raise errors of many types
+        raise InputError(f"the snapshot cannot be read: {error}", fix) from error
+    if found != owner:
+        raise InputError(f"the snapshot is of {found}, not of {owner}", fix)
+    return value
 
 
 class _Pickler(pickle.Pickler):
@@ -109,6 +128,8 @@ class _Unpickler(pickle.Unpickler):
         self._shared = _shared(simulation)
 
     def persistent_load(self, name: Any) -> Any:
+        if name not in self._shared:
+            raise _of_another()
         return self._shared[name]
 
 

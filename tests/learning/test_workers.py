@@ -172,6 +172,7 @@ def test_an_error_in_another_process_is_the_same_error_here() -> None:
         assert failed.value.args[1] == {"number": 2}
     env.close()
     wrong = VectorEnv(task(reward=[of_python("nothing")]), 3, workers=2)
+    wrong.reset()
     with pytest.raises(ArgumentError, match="cannot be imported") as refused:
         wrong.step(np.zeros((3, 2)))
     assert refused.value.fix == "give MODULE:FUNCTION of a module that Python finds"
