@@ -23,6 +23,7 @@ from irsim.bridges.ros.messages import Messages
 from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError
 from irsim.runs import open_run
+from irsim.scenario.read import read
 from tests.bridges.scenes import recorded
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("ros_others")]
@@ -70,6 +71,8 @@ def test_the_robot_drives_as_recorded_in_what_its_scans_saw(bag: Path) -> None:
     assert np.median(np.abs(now[both] - then[both])) < 0.05
     grey = np.asarray(Image.open("again.png"))
     assert set(np.unique(grey)) == {0, 205, 254}  # solid, unknown, free
+    cells = read("again.yaml").scenario.grid.cells
+    assert ((grey == 205) == cells.unknown[:, ::-1].T).all()
 
 
 def test_scans_of_another_robot_make_no_map() -> None:
@@ -199,8 +202,8 @@ def test_poses_come_from_transforms_where_there_is_no_odometry(corrected: bool) 
     trace = open_run(str(result.run_id)).trace()
     np.testing.assert_allclose(trace.pose[0, 0, :2], [1.0, 2.0], atol=1e-3)
     np.testing.assert_allclose(trace.pose[20, 0, :2], [3.0, 2.0], atol=0.02)
-    text = Path("s.yaml").read_text()
-    size = [float(text.split(f"{key}: ")[1].split()[0]) for key in ("width", "height")]
+    world = read("s.yaml").scenario.world
+    size = [world.width, world.height]
     np.testing.assert_allclose(size, [8.0, 6.0], atol=0.15)  # the walls and 1 m around them: nothing at 30 m
 
 

@@ -20,6 +20,7 @@ from irsim.bridges.ros.bags.reading import Recorded, read_bag
 from irsim.bridges.ros.incoming import Scan
 from irsim.bridges.ros.real import composed
 from irsim.common.arrays import Floats
+from irsim.components.maps._rosmap import RosMeta
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.scenario.yaml.modeline import with_modeline
@@ -230,7 +231,7 @@ def import_bag(
 
     Args:
         path: A ``.bag`` file of ROS 1, or a folder of rosbag2.
-        out: The scenario; the map is the picture beside it.
+        out: The scenario; its map is the file ``.map.yaml`` and the picture beside it.
         options: How the bag is read.
         overwrite: Replace files that exist.
 
@@ -269,7 +270,8 @@ def import_bag(
     contents = [(out, with_modeline(text, out).encode())]
     picture = out.with_suffix(".png")
     if grid is not None:
-        contents.append((picture, _picture(grid)))
+        meta = RosMeta(picture.name, grid.resolution, (*grid.origin, 0.0))
+        contents += [(picture, _picture(grid)), (_described(out), meta.as_yaml().encode())]
     write_all_or_none(contents, overwrite=overwrite)
     shown = str(picture) if grid is not None else None
     return ImportedBag(str(out), shown, len(times), len(scans), float(times[-1]), notes)
@@ -311,23 +313,20 @@ def _text(
     mount: tuple[float, float, float], name: str, out: Path, options: BagOptions,
 ) -> str:  # fmt: skip
     if grid is not None:
-        low, size = grid.origin, [count * grid.resolution for count in grid.levels.shape]
+        extent = [f"  obstacle_map: {{name: ros, path: {json.dumps(_described(out).name)}, unknown: unknown}}"]
     else:
-        corner = np.floor(poses[:, :2].min(axis=0) - 1)
-        low, size = (float(corner[0]), float(corner[1])), (np.ceil(poses[:, :2].max(axis=0) + 1) - corner).tolist()
+        low = np.floor(poses[:, :2].min(axis=0) - 1)
+        size = np.ceil(poses[:, :2].max(axis=0) + 1) - low
+        extent = [f"  width: {size[0]:.6g}", f"  height: {size[1]:.6g}", f"  offset: [{low[0]:.6g}, {low[1]:.6g}]"]
     lines = [
         f"# The robot of {json.dumps(name)} drives as {json.dumps(recorded.odom_topic)} says, for {times[-1]:.1f} s.",
         "# Written by `irsim bridge import-bag`.",
         "world:",
-        f"  width: {size[0]:.6g}",
-        f"  height: {size[1]:.6g}",
-        f"  offset: [{low[0]:.6g}, {low[1]:.6g}]",
+        *extent,
         f"  step_time: {options.step_time!r}",
         f"  time_limit: {times[-1] + 2 * options.step_time:.6g}",
         "  collision_mode: unobstructed  # the recording goes on, whatever the map says",
     ]
-    if grid is not None:
-        lines.append(f"  obstacle_map: {{name: image, path: {json.dumps(out.with_suffix('.png').name)}}}")
     rows = ", ".join(f"[{x:.4f}, {y:.4f}, {yaw:.4f}]" for x, y, yaw in poses.tolist())
     lines += [
         "robot:",
@@ -364,6 +363,11 @@ def _lidar(scan: Scan, mount: tuple[float, float, float]) -> str:
         f"    sensors:\n      - {{name: lidar2d, number: {len(scan.ranges)}, angle_range: {min(spread, 6.28318):.6g}, "
         f"range_min: {max(0.0, scan.low):.6g}, range_max: {scan.high:.6g}, offset: [{offset}]}}"
     )
+
+
+def _described(out: Path) -> Path:
+    """The file that describes the map: a picture alone cannot say what is unknown."""
+    return out.with_suffix(".map.yaml")
 
 
 def _picture(grid: BagMap) -> bytes:
