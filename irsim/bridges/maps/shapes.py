@@ -107,8 +107,9 @@ def _opened(region: Any, width: float) -> Any:
 def _thin_walls(solid: Any, side: float) -> list[Any]:
     """The parts of an area that are thinner than a cell, and stand by themselves rather than along a wider part."""
     wide = _opened(solid, side)
+    near = wide.buffer(1e-6)
     parts = [part for part in shapely.get_parts(solid.difference(wide)) if part.length > _LONG * side]
-    return [part for part in parts if part.boundary.intersection(wide.buffer(1e-6)).length < 0.3 * part.length]
+    return [part for part in parts if part.boundary.intersection(near).length < 0.3 * part.length]
 
 
 def _fine_side(solid: Any, low: Any, high: Any, limits: ImportLimits) -> float:

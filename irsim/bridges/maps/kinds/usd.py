@@ -53,7 +53,8 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene | Ou
         why = "; ".join(["it has no visible meshes", *answer["notes"]])
         raise unusable(path, why, "export the stage with its meshes, not only references")
     triangles, turn = turned(triangles, options.rotate, axes_of(frame))
-    outlines = None if answer["own"] is None or turn is not None else _outlines(triangles, answer["own"], options)
+    exact = answer["own"] is not None and turn is None and len(triangles) <= _MAX_OUTLINED
+    outlines = _outlines(triangles, answer["own"], options) if exact else None
     if outlines is None or not outlines.things:
         return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"], turn=turn)
     given = next((name for name in ("level", "ground") if getattr(options, name) is not None), None)
