@@ -17,6 +17,8 @@ _MOST_TOGETHER = 64 * 1024**2
 """Size of all bodies that are being received [bytes]."""
 _SECONDS = 60.0
 """Time for a body [s]."""
+_LINGER_S = 1.0
+"""Time in which a client may go on sending what was refused, or the end of the connection would lose the answer [s]."""
 
 _STREAM = "subscriptions/listen"
 """Method whose answer has no end, and so holds a connection."""
@@ -42,18 +44,21 @@ class WholeMessages:
         if scope["type"] != "http" or scope["method"] != "POST":
             await self._app(scope, receive, send)
             return
+        if _announced(scope) > _MOST:
+            await _refuse(_too_large(), scope, receive, send)
+            return
         body = bytearray()
         try:
             with anyio.move_on_after(_SECONDS) as late:
                 refused = await self._read(body, receive)
             if late.cancelled_caught:
                 refused = PlainTextResponse("The body took too long", status_code=408)
-            if refused is not None:
-                refused.headers["connection"] = "close"
-                await refused(scope, receive, send)
-                return
         finally:
             self._held -= len(body)
+        if refused is not None:
+            body.clear()
+            await _refuse(refused, scope, receive, send)
+            return
         await self._answer(bytes(body), scope, receive, send)
 
     async def _read(self, body: bytearray, receive: Receive) -> Response | None:
@@ -67,7 +72,7 @@ class WholeMessages:
             body += data
             self._held += len(data)
             if len(body) > _MOST:
-                return PlainTextResponse("The body is too large", status_code=413)
+                return _too_large()
             if self._held > _MOST_TOGETHER:
                 return PlainTextResponse("Too many bodies at the same time; try again", status_code=503)
             more = part.get("more_body", False)
@@ -103,3 +108,27 @@ class WholeMessages:
         finally:
             self._streams -= stream
             self._in_use -= {used}
+
+
+def _announced(scope: Scope) -> int:
+    """Size of a body as its headers say it [bytes]; 0 if they do not."""
+    sizes = [value for name, value in scope["headers"] if name == b"content-length"]
+    return max((int(size) for size in sizes if size.isdigit()), default=0)
+
+
+def _too_large() -> Response:
+    return PlainTextResponse(f"The body is too large: at most {_MOST:,} bytes", status_code=413)
+
+
+async def _refuse(refused: Response, scope: Scope, receive: Receive, send: Send) -> None:
+    """Send an answer at once, drop for a moment what the client still sends, and end the connection."""
+
+    async def send_open(message: Message) -> None:
+        await send({**message, "more_body": True} if message["type"] == "http.response.body" else message)
+
+    refused.headers["connection"] = "close"
+    await refused(scope, receive, send_open)
+    with anyio.move_on_after(_LINGER_S):
+        while (await receive())["type"] == "http.request":
+            pass
+    await send({"type": "http.response.body", "body": b"", "more_body": False})

@@ -52,9 +52,10 @@ class StrictTool(Tool):
         """Check the arguments and call the function."""
         arguments = self._renamed(arguments)
         known = list(self.parameters["properties"])
-        for name in arguments:
+        for name, value in arguments.items():
             if name not in known:
-                fix = suggestion(name, known, f"{self.name} takes {', '.join(known)}")
+                meant = [one for one in known if not _is_other(one, value)]
+                fix = suggestion(name, meant, f"{self.name} takes {', '.join(known)}")
                 raise failure("unknown-argument", f"there is no argument {clean(name)!r}", where=self.name, fix=fix)
         given = {name: _unpack(value, self.parameters["properties"][name]) for name, value in arguments.items()}
         self._check(given)
@@ -123,6 +124,15 @@ class _AsGiven(FuncMetadata):
     def pre_parse_json(self, data: dict[str, Any]) -> dict[str, Any]:
         """Return the arguments unchanged."""
         return data
+
+
+def _is_other(name: str, value: Any) -> bool:
+    """Whether a value is the name of a file where an argument takes its text, or a text where it takes a name."""
+    if not isinstance(value, str):
+        return False
+    if "\n" in value:
+        return name.endswith("path")
+    return name.endswith("yaml") and value.strip().lower().endswith((".yaml", ".yml"))
 
 
 def _unpack(value: Any, schema: Mapping[str, Any]) -> Any:

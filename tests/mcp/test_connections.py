@@ -192,6 +192,25 @@ def test_bodies_have_their_time(monkeypatch: pytest.MonkeyPatch) -> None:
         assert received(slow).startswith(b"HTTP/1.1 408 ")
 
 
+def test_a_body_that_is_announced_as_too_large_is_refused_at_once() -> None:
+    with serving(WholeMessages(plain)) as (connect, _):
+        waiting, sending, asking = connect(), connect(), connect()
+        began = time.monotonic()
+        size = 50_000_000
+        waiting.sendall(HEAD + b"Content-Length: %d\r\n\r\n" % size)
+        asking.sendall(HEAD + b"Expect: 100-continue\r\nContent-Length: %d\r\n\r\n" % size)
+        sending.sendall(HEAD + b"Content-Length: %d\r\n\r\n" % size + b" " * size)
+        for client in (waiting, asking, sending):
+            answer = received(client)
+            assert answer.startswith(b"HTTP/1.1 413 ")
+            assert b"at most 4,194,304 bytes" in answer
+        assert time.monotonic() - began < 8
+        clients = [connect(), connect()]
+        clients[0].sendall(HEAD + b"Content-Length: %d\r\n\r\n" % 4_194_304)
+        clients[1].sendall(WHOLE)
+        assert clients[1].recv(1000).startswith(b"HTTP/1.1 200 OK")
+
+
 def test_bodies_share_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bodies, "_MOST_TOGETHER", 100_000)
     with serving(WholeMessages(plain)) as (connect, _):

@@ -24,6 +24,14 @@ REFUSED = {
         "run_episode",
         {"scenario_yml": ROOM},
     ),
+    "there is no argument 'scenario' (run_episode). Fix: did you mean scenario_path?": (
+        "run_episode",
+        {"scenario": "rooms/hall.yaml"},
+    ),
+    "there is no argument 'scenario' (validate_scenario). Fix: did you mean scenario_yaml?": (
+        "validate_scenario",
+        {"scenario": ROOM},
+    ),
     "unknown-argument: there is no argument 'behavior' (lookup). Fix: lookup takes topic, parameters.": (
         "lookup",
         {"behavior": "rvo"},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import io
 import json
 import os
 import socket
@@ -23,6 +24,7 @@ from irsim.lookup.topics import lookup
 from irsim.policies import open_policy
 from irsim.policies.catalog import UnknownPolicyError
 from irsim.policies.process import ProcessPolicy
+from irsim.policies.process.channel import Channel, PeerError
 from tests.policies.scenes import FREE
 
 PROGRAM = lookup("process").example or ""
@@ -252,3 +254,14 @@ def test_no_program_is_started_where_only_files_of_a_folder_may_be_used(tmp_path
         open_policy(f"{{name: process, command: [touch, {tmp_path / 'made'}]}}", root=tmp_path)
     assert "plug-ins are not run here" in str(raised.value.fix)
     assert not (tmp_path / "made").exists()
+
+
+def test_what_a_program_said_before_it_ended_is_read() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)  # it no longer reads
+    with os.fdopen(writing, "wb", 0) as writer:
+        channel = Channel(io.BufferedReader(io.BytesIO(b"hello\n")), writer, lambda: None)  # type: ignore[arg-type]
+        assert channel.ask(b"{}", 10) == b"hello\n"
+        with pytest.raises(PeerError, match="has closed the connection"):
+            channel.ask(b"{}", 10)
+        channel.close()

@@ -161,7 +161,8 @@ def _talk(
     with reader:
         while (line := asked.get()) is not None:
             try:
-                write_all(writer, line + b"\n")
+                with contextlib.suppress(OSError):  # what a program said before it ended is read nevertheless
+                    write_all(writer, line + b"\n")
                 answer = reader.readline(MAX_LINE_BYTES + 1)
             except (OSError, ValueError) as error:  # closed at the other end, or by this one
                 answers.put(OSError(str(error)))
