@@ -90,7 +90,7 @@ _SAYS = {
     "occupied": "count as occupied",
     "unknown": "stay unknown: planners avoid them, and beams pass",
 }
-"""What becomes of unknown cells."""
+"""How a scenario takes unknown cells."""
 
 
 class Up(str, Enum):
@@ -158,8 +158,8 @@ def import_(
     unknown: Annotated[
         Unknown | None,
         typer.Option(
-            help="What cells are of which nothing is known; planners avoid unknown ones, and beams pass them. Default: "
-            "unknown for maps of ROS, else occupied.",
+            help="How to take cells of which nothing is known; planners avoid unknown ones, and beams pass them. "
+            "Default: unknown for maps of ROS, else occupied.",
             show_default=False,
         ),
     ] = None,

@@ -1,4 +1,4 @@
-"""Texts of JSON that irsim writes, also where the name of a file is no text, as names on Linux may be any bytes."""
+"""Texts of JSON that irsim writes, also with names of files that cannot be decoded: on Linux they may be any bytes."""
 
 from __future__ import annotations
 

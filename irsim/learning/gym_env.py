@@ -94,7 +94,7 @@ class Env(Snapshots, gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[m
 
         Raises:
             ArgumentError: The action has another shape, or is not finite.
-            ResetNeeded: The episode is over, or none has begun.
+            ResetNeeded: The episode is over, or has not begun.
         """
         if self._over or self._fresh:
             what = "no episode has begun" if self._fresh else "the episode is over"

@@ -43,7 +43,7 @@ class Result(BaseModel):
         """
         try:
             text = super().model_dump_json(**options)
-        except PydanticSerializationError:  # the name of a file is no text
+        except PydanticSerializationError:  # the name of a file cannot be decoded
             indent = options.pop("indent", None)
             text = to_json(encodable(self.model_dump(**options)), indent=indent, inf_nan_mode="null").decode()
         return text if text.isprintable() else _UNUSUAL.sub(_escaped, text)

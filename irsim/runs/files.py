@@ -77,7 +77,7 @@ def record_json(data: Any, **options: Any) -> bytes:
     """
     try:
         return to_json(data, **options)
-    except PydanticSerializationError:  # the name of a file is no text
+    except PydanticSerializationError:  # the name of a file cannot be decoded
         return to_json(encodable(data.model_dump() if isinstance(data, BaseModel) else data), **options)
 
 

@@ -81,7 +81,7 @@ def dump(value: Any, simulation: Simulation, owner: str) -> bytes:
     Args:
         value: The value.
         simulation: The simulation that it is a part of.
-        owner: What has this memory, in words; :func:`load` refuses the memory of other things.
+        owner: The owner of this memory, in words; :func:`load` refuses the memory of other things.
 
     Raises:
         InputError: Something in it cannot be pickled.
@@ -99,17 +99,17 @@ def load(data: bytes, simulation: Simulation, owner: str) -> Any:
     """The value that :func:`dump` has pickled, with the objects of this simulation.
 
     Raises:
-        InputError: It is no such value.
+        InputError: It is damaged, or the value of another owner.
     """
     fix = "give what snapshot() has returned"
     try:
-        found, value = _Unpickler(io.BytesIO(data), simulation).load()
+        kind, value = _Unpickler(io.BytesIO(data), simulation).load()
     except InputError:
         raise
     except Exception as error:  # damaged pickles raise errors of many types
         raise InputError(f"the snapshot cannot be read: {error}", fix) from error
-    if found != owner:
-        raise InputError(f"the snapshot is of {found}, not of {owner}", fix)
+    if kind != owner:
+        raise InputError(f"the snapshot is of {kind}, not of {owner}", fix)
     return value
 
 

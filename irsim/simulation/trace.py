@@ -236,7 +236,7 @@ def _trace(simulation: Simulation, begin: int, columns: Sequence[NDArray[Any]], 
 
 
 def recorded_rows(simulation: Simulation) -> list[int]:
-    """Rows of the objects whose states a recorded run keeps: those that can move, which any can in Python."""
+    """Rows of the objects whose states a recorded run keeps: all that can move, which any object can in Python."""
     records, any_can_move = simulation.scenario.objects, simulation.in_python
     return [row for row, record in enumerate(records) if any_can_move or not record.static or record.appear_time]
 

@@ -25,7 +25,7 @@ HALL = """\
 # Our hall.
 world: {width: 14, height: 10, offset: [-6, -5], step_time: 0.1, time_limit: 30}  # m
 robot:
-  - name: guide  # starts far from everybody
+  - name: guide  # starts far from all people
     kinematics: {name: diff}
     shape: {name: rectangle, length: 0.8, width: 0.4}
     state: [-5, -4, 0]
@@ -139,7 +139,7 @@ def test_time_and_space_of_the_world_are_compared() -> None:
     assert note.startswith("3 of 3 are outside of the world for a part of their time: ped_1, ped_7, ped_12; --crop")
     coarse = HALL.replace("step_time: 0.1", "step_time: 0.3")
     assert said(merged(coarse, "coarse.yaml")[1], "between steps")
-    with pytest.raises(BridgeError, match=r"nobody is in the world .* x -6.0 to 8.0 m") as caught:
+    with pytest.raises(BridgeError, match=r"no pedestrian is in the world .* x -6.0 to 8.0 m") as caught:
         merged(out="far.yaml", placing=Placing(offset=(100, 0)))
     assert "--offset" in (caught.value.fix or "")
     assert not Path("far.yaml").exists()

@@ -1,4 +1,4 @@
-"""Names of files that are no text, and names that are no files: a result or an error with a code, never a traceback."""
+"""Names of files that cannot be decoded, and names without a file: a result or an error with a code, no traceback."""
 
 from __future__ import annotations
 

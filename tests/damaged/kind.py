@@ -1,4 +1,4 @@
-"""What a kind of file is, and functions that write and read examples of several kinds."""
+"""A kind of file, and functions that write and read examples of several kinds."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ AREA = sum(shape.area for shape in (YARD, TOWER, HOUSE))
 
 
 def in_degrees(shape: Any) -> Any:
-    """A shape near Zurich, whose meters are those of UTM zone 32, as longitudes and latitudes, by PROJ."""
+    """A shape near Zurich, in meters of UTM zone 32, as longitudes and latitudes, by PROJ."""
     pyproj = pytest.importorskip("pyproj")
     back = pyproj.Transformer.from_crs("EPSG:32632", "EPSG:4326", always_xy=True)
     moved = shapely.affinity.translate(shape, 500_000, 5_250_000)  # on the middle of the zone, where lengths are 0.9996

@@ -22,6 +22,7 @@ from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.read import read
 from tests.bridges.maps.scenes import TWO_ROOMS, box, flat, house, mesh_set, storey, tile, write_glb, write_obj, y_up
+from tests.bridges.maps.test_obstacles import WORLD
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("meshes")]
 trimesh = pytest.importorskip("trimesh")
@@ -287,6 +288,7 @@ def test_the_commands_and_the_program_of_the_page(tmp_path) -> None:
     write_glb(tmp_path / "scene.glb", lying)  # which the writer turns back: z is up in the file
     assert np.ptp(y_up(lying)[..., 2]) < 3.5
     (tmp_path / "scene.navmesh").write_bytes(mesh_set(tile(TWO_ROOMS), version=2))
+    (tmp_path / "house.sdf").write_text(WORLD, encoding="utf-8")
     text = PAGE.read_text(encoding="utf-8")
     commands, [program] = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("bash", "python"))
     for line in "\n".join(commands).splitlines():

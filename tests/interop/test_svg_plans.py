@@ -1,4 +1,4 @@
-"""Floor plans in SVG as other programs write them: the occupied area equals that of what they draw."""
+"""Floor plans in SVG as other programs write them: the occupied area is the area that they draw."""
 
 from __future__ import annotations
 

@@ -96,7 +96,7 @@ def test_names_that_are_searched_for_lead_nowhere_else(tmp_path, monkeypatch) ->
 
 @pytest.mark.parametrize("kind", ["", "Xform "])
 def test_value_clips_are_not_read(kind, tmp_path, monkeypatch) -> None:
-    """Also those of a prim without a type, whose values are those of the prims below it."""
+    """Also a clip of a prim without a type, which changes the prims below it."""
     monkeypatch.chdir(tmp_path)
     over = 'over "Part"\n{\n    over "Plane"\n    {\n        double width.timeSamples = {0: 8}\n    }\n}\n'
     Path("clip.usda").write_text(_HEAD + over)

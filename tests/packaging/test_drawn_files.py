@@ -1,4 +1,4 @@
-"""Pictures that the package holds are those that the programs beside them draw."""
+"""The programs beside the bundled pictures draw the same pictures again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures show nobody who has not come yet or has left: no body, arrow, goal, name, trail or track."""
+"""Pictures show no person who has not come yet or has left: no body, arrow, goal, name, trail or track."""
 
 from __future__ import annotations
 

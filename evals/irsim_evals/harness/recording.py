@@ -223,7 +223,7 @@ def _named(case: str, instance: str) -> Instance:
     try:
         return case_of(case, int(instance) if instance else None)
     except ValueError:
-        what = f"the recording has an attempt at the instance '{clean(instance, 60)}' of {case}, which is no seed"
+        what = f"the recording has an attempt at the instance '{clean(instance, 60)}' of {case}, which cannot be a seed"
         raise ArgumentError(what, fix) from None
 
 

@@ -18,7 +18,7 @@ __all__ = ["entries_of"]
 
 _MAX_OBSTACLES = 5000
 _SMALLEST = 1e-4
-"""Area below which something is no obstacle [m²]."""
+"""Smallest area of an obstacle [m²]."""
 _EXACT = 5e-4
 """Distance by which outlines may become simpler [m]."""
 _LEAST_CORNERS = 12
@@ -33,7 +33,7 @@ def entries_of(things: list[Outlined]) -> tuple[list[str], list[str]]:
     """Lines of YAML, one for each obstacle, and remarks on what was left out or cut.
 
     Args:
-        things: What stands in the way.
+        things: The outlines that stand in the way.
 
     Raises:
         BridgeError: There would be too many obstacles.

@@ -138,7 +138,7 @@ def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **optio
 
 
 def _entries(kind: Kind, result: Occupancy, options: ImportOptions) -> list[str]:
-    """Obstacles of a scenario as lines of YAML; remarks on them join those of the map.
+    """Obstacles of a scenario as lines of YAML; remarks on them follow the remarks on the map.
 
     Raises:
         ArgumentError: The file has no outlines, or an option is about cells.
@@ -205,7 +205,9 @@ def _target(name: str | Path, where: str, limits: ImportLimits) -> Path:
 def _confined(name: str | Path, where: str, limits: ImportLimits) -> Path:
     """The file of a name, which must not lead out of the folder of the limits."""
     if "\0" in str(name):
-        raise BridgeError("bridge-file", f"'{clean(str(name), 200)}' is no name of a file", "name a file", where=where)
+        raise BridgeError(
+            "bridge-file", f"'{clean(str(name), 200)}' cannot be the name of a file", "name a file", where=where
+        )
     if limits.root is None:
         return Path(name)
     wrong = why_outside(str(name), Path(limits.root))

@@ -73,7 +73,7 @@ class ImportOptions(Options):
     seed_point: tuple[Meters, Meters] | None = None
     """x, y of a place that is free: what is connected to it is free in the map. Default: the largest connected part."""
     unknown: Literal["free", "occupied", "unknown"] | None = None
-    """What unknown cells are in the scenario: ``unknown`` ones let beams and bodies pass, while planners and random
+    """How the scenario takes unknown cells: ``unknown`` ones let beams and bodies pass, while planners and random
     places keep out. Default: unknown for maps of ROS, else occupied."""
     meters_per_unit: Annotated[Meters, Field(gt=0, le=1e6)] | None = None
     """Length of a unit of a mesh, a stage or a scene of splats, such as 0.001 for millimeters. Default: what a stage of
@@ -85,7 +85,7 @@ class ImportOptions(Options):
     lanes: Literal["drive", "walk", "all"] = "drive"
     """Lanes of roads that are free: those for vehicles, those for pedestrians, or both."""
     layers: Annotated[tuple[str, ...], Field(min_length=1, max_length=1000)] | None = None
-    """Names of the layers of a floor plan that count, such as those of walls. Default: all that are seen."""
+    """Names of the layers of a floor plan that count, such as the layers of walls. Default: all that are seen."""
 
 
 @dataclass(frozen=True)

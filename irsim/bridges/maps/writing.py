@@ -113,7 +113,7 @@ def files_of(
     Args:
         occupancy: Values and place of the map.
         values: (nx, ny) occupancies, -1 where unknown.
-        filled: (nx, ny) the same with unknown cells filled in; those that stay unknown need a map of ROS, whose picture
+        filled: (nx, ny) the same with unknown cells filled in; cells that stay unknown need a map of ROS, whose picture
             tells them apart.
         target: The scenario.
         sidecar: Content of the sidecar.

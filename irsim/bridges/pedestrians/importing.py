@@ -236,7 +236,7 @@ def _remarks(
     made: SuiteText | None,
     rate: float | None,
 ) -> list[str]:
-    """What a user should know about a recording; ``rate`` is given if it was assumed."""
+    """Notes for the user about a recording; ``rate`` is given if it was assumed."""
     notes = []
     if made is not None and not made.whole:
         notes.append(f"the recording ends before the only window of the suite, which is {made.length:g} s long")

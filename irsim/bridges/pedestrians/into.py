@@ -55,7 +55,7 @@ class Merged:
 
 @dataclass(frozen=True)
 class _Path:
-    """Where somebody is, close enough together for comparisons.
+    """Where a pedestrian is, close enough together for comparisons.
 
     Attributes:
         name: Of the pedestrian.
@@ -79,7 +79,7 @@ def merge(scene: Path, target: Path, tracks: Sequence[Track], layout: Layout) ->
 
     Raises:
         ScenarioError: The scenario has errors.
-        BridgeError: Nothing can be added to its text, nobody would be in its world, or it would be too large.
+        BridgeError: Nothing can be added to its text, no pedestrian would be in its world, or it would be too large.
     """
     document = load_path(scene)
     scenario = or_raise(read(document, strict=False))[0]
@@ -107,7 +107,7 @@ def merge(scene: Path, target: Path, tracks: Sequence[Track], layout: Layout) ->
 
 
 def _free_name(name: str, taken: set[str]) -> str:
-    """A name that nobody has, which is then taken."""
+    """A free name, which is then taken."""
     free, number = name, 2
     while free in taken:
         free, number = f"{name}_{number}", number + 1
@@ -121,7 +121,7 @@ def _renamed(tracks: Sequence[Track], people: Sequence[Track]) -> list[str]:
 
 
 def _outside(track: Track, scenario: ResolvedScenario) -> float:
-    """Share of the places of somebody that are outside of the world."""
+    """Share of the places of a pedestrian that are outside of the world."""
     x0, y0, x1, y1 = scenario.world.bounds
     (x, y) = track.places.T
     return float(((x < x0) | (x > x1) | (y < y0) | (y > y1)).mean())
@@ -131,7 +131,7 @@ def _elsewhere(people: Sequence[Track], scenario: ResolvedScenario) -> str:
     places = np.concatenate([track.places for track in people])
     recorded = _span(places.min(axis=0), places.max(axis=0))
     x0, y0, x1, y1 = scenario.world.bounds
-    return f"nobody is in the world of the scene: they walk in {recorded}, and it is {_span((x0, y0), (x1, y1))}"
+    return f"no pedestrian is in the world of the scene: they walk in {recorded}, and it is {_span((x0, y0), (x1, y1))}"
 
 
 def _span(low: Sequence[float] | Floats, high: Sequence[float] | Floats) -> str:
@@ -154,7 +154,7 @@ def _too_late(people: Sequence[Track], scenario: ResolvedScenario) -> list[str]:
 
 
 def _meetings(simulation: Simulation, people: Sequence[Track], radius: float) -> list[str]:
-    """Who walks through something that stands, and whose start lies on somebody's path."""
+    """Who walks through something that stands, and whose start lies on a pedestrian's path."""
     named = {view.name: view for view in views(simulation)}
     paths, names = [_path(track) for track in people], {track.name for track in people}
     drawn = {index for placement in simulation.scenario.placements for index in placement.objects}
@@ -179,7 +179,7 @@ def _meetings(simulation: Simulation, people: Sequence[Track], radius: float) ->
 
 
 def _start_on_path(view: ObjectView, paths: Sequence[_Path], radius: float) -> list[str]:
-    """A note if somebody walks over the place at which an object starts."""
+    """A note if a pedestrian walks over the place at which an object starts."""
     x, y, heading = view.init_state[:3, 0].tolist()
     body = translate(turned(view.body.original_geometry, heading, (0, 0), use_radians=True), x, y)
     met = []
@@ -194,7 +194,7 @@ def _start_on_path(view: ObjectView, paths: Sequence[_Path], radius: float) -> l
 
 
 def _path(track: Track) -> _Path:
-    """Places of somebody that are at most :data:`_SPACING` apart."""
+    """Places of a pedestrian that are at most :data:`_SPACING` apart."""
     lengths = np.hypot(*np.diff(track.places, axis=0).T)
     counts = np.maximum(1, np.ceil(lengths / _SPACING)).astype(int)
     legs = np.repeat(np.arange(len(counts)), counts)

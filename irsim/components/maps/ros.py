@@ -23,7 +23,7 @@ class RosMap(MapOptions):
     path: Annotated[str, Field(strict=True, min_length=1)]
     """YAML file of the map."""
     unknown: Literal["free", "occupied", "unknown"] = "free"
-    """What cells are that are neither free nor occupied; pictures show them in grey. ``unknown``: beams, sight and
+    """How to take cells that are neither free nor occupied; pictures show them in grey. ``unknown``: beams, sight and
     bodies pass through them, while planners, ``follow`` and random starts and goals keep out."""
 
 

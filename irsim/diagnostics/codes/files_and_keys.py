@@ -211,7 +211,7 @@ MAPS_AND_LIMITS: dict[str, Code] = {
     ),
     "map-full": Code(
         "map without free space",
-        "Every cell is occupied, or none is known to be free. Black is occupied, white is free.",
+        "Every cell is occupied or unknown. Black is occupied, white is free.",
     ),
     "map-values": Code(
         "not an occupancy grid",

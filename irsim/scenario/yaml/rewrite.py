@@ -90,7 +90,7 @@ def _is_key(node: yaml.Node, part: str | int) -> bool:
 
 
 def node_at(node: yaml.Node | None, path: Path) -> yaml.Node:
-    """The node at a path; a ``LookupError`` where there is none."""
+    """The node at a path; raises ``LookupError`` if the path leads nowhere."""
     for part in path:
         if isinstance(node, yaml.MappingNode):
             node = next((value for key, value in node.value if _is_key(key, part)), None)

@@ -25,7 +25,7 @@ def assert_occupied(file: Path, area: float, **options: Any) -> None:
 
     Args:
         file: The file; the scenarios are written beside it.
-        area: What it occupies by what was drawn.
+        area: The area that it occupies, by its drawing.
         **options: Options of the import.
     """
     result = import_map(file, file.with_suffix(".map.yaml"), overwrite=True, **options)

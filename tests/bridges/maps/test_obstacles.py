@@ -61,10 +61,10 @@ def test_holes_are_cut_and_small_outlines_are_left_out() -> None:
     yard = shapely.box(0, 0, 10, 8).difference(shapely.union_all([shapely.box(x, 1, x + 2, 7) for x in (1, 4, 7)]))
     crumb = shapely.box(20, 0, 20.005, 0.005)
     lines, notes = entries_of([Outlined("yard\n- evil", yard), Outlined("", crumb)])
-    found = [entry["shape"] for entry in shapes(lines)]
-    assert all(shape["name"] in ("polygon", "rectangle") for shape in found)
-    pieces = [shapely.Polygon(shape["vertices"]).area for shape in found if shape["name"] == "polygon"]
-    pieces += [shape["length"] * shape["width"] for shape in found if shape["name"] == "rectangle"]
+    drawn = [entry["shape"] for entry in shapes(lines)]
+    assert all(shape["name"] in ("polygon", "rectangle") for shape in drawn)
+    pieces = [shapely.Polygon(shape["vertices"]).area for shape in drawn if shape["name"] == "polygon"]
+    pieces += [shape["length"] * shape["width"] for shape in drawn if shape["name"] == "rectangle"]
     assert sum(pieces) == pytest.approx(yard.area)
     assert notes == [
         "left out: 1 outline smaller than 1 cm²",

@@ -1,4 +1,4 @@
-"""The side of the cells: chosen and said where a map would be too large, for every kind of file that has none."""
+"""The side of the cells: chosen and said where a map would be too large, for every kind of file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scenes of splats that are tilted: the direction that points up is found, and what ``--rotate`` does by hand."""
+"""Scenes of splats that are tilted: the direction that points up is detected, and what ``--rotate`` does by hand."""
 
 from __future__ import annotations
 
@@ -51,10 +51,10 @@ def test_tilts_up_to_forty_degrees_are_found_within_half_a_degree(kind: str, cou
     columns = looks(kind)
     for number, tilt in enumerate(tilts(count, 40.0)):
         scene = read_splats(write_ply(Path("a.ply"), turned(columns, tilt, np.array([1.0, -2.0, number / 10]))))
-        found = upward_of(scene, UP)
-        assert found is not None
-        assert math.degrees(math.acos(min(1.0, float(found.direction @ tilt @ UP)))) < 0.5
-        assert found.tilt == pytest.approx(1 + 39 * number / (count - 1), abs=0.5)
+        turn = upward_of(scene, UP)
+        assert turn is not None
+        assert math.degrees(math.acos(min(1.0, float(turn.direction @ tilt @ UP)))) < 0.5
+        assert turn.tilt == pytest.approx(1 + 39 * number / (count - 1), abs=0.5)
 
 
 def plan_of(file: Path, **options) -> tuple[np.ndarray, float]:

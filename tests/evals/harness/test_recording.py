@@ -84,7 +84,8 @@ def test_a_recording_of_another_prompt_is_refused(recording: Recording) -> None:
 
 
 @pytest.mark.parametrize(
-    ("case", "instance", "message"), [("no-case", "4", "no case has that name"), ("pub-01", "four", "which is no seed")]
+    ("case", "instance", "message"),
+    [("no-case", "4", "no case has that name"), ("pub-01", "four", "which cannot be a seed")],
 )
 def test_a_recording_of_an_unknown_instance_is_refused(
     recording: Recording, case: str, instance: str, message: str

@@ -200,7 +200,7 @@ def _pixels_per_unit(drawing: Any, size: tuple[float, float] | None) -> float:
 
 
 def _unit_notes(root: ET.Element, size: tuple[float, float] | None, drawing: Any) -> list[str]:
-    """What there is to say about the size of the drawing."""
+    """Remarks on the size of the drawing."""
     width = (root.get("width") or "").strip().lower()
     known = _has_length(root) and width.endswith(("mm", "cm", "in", "pt", "pc", "q"))
     shown = "" if size is None else f", so that the drawing is {size[0] * _PIXEL:.3g} m x {size[1] * _PIXEL:.3g} m"

@@ -112,7 +112,7 @@ def _check_layers(path: Path, root: ET.Element, layers: list[str]) -> None:
 
 
 def _check_reference(path: Path, use: ET.Element) -> None:
-    """What an element uses is in the file itself."""
+    """Refuse an element that uses another file."""
     address = (use.get("href") or "").strip()
     if address and not address.startswith("#"):
         what = f"it refers to '{clean(address, 100)}', and nothing outside of the file is read"
@@ -120,7 +120,7 @@ def _check_reference(path: Path, use: ET.Element) -> None:
 
 
 def _check_uses(path: Path, root: ET.Element) -> None:
-    """What is used several times adds up to few enough shapes, and uses nothing around itself."""
+    """Refuse elements that are used so often that there are too many shapes, or that use themselves."""
     known = {item.get("id", ""): item for item in root.iter()}
     counts: dict[str, int] = {}
     open_names: set[str] = set()
@@ -140,7 +140,7 @@ def _check_uses(path: Path, root: ET.Element) -> None:
                 open_names.discard(name)
             total += counts[name]
         if total > _MAX_ELEMENTS:
-            raise unusable(path, f"it draws more than {_MAX_ELEMENTS:,} shapes", "leave out what is no wall")
+            raise unusable(path, f"it draws more than {_MAX_ELEMENTS:,} shapes", "keep only the walls")
         return total
 
     count(root)

@@ -182,7 +182,7 @@ def _own(stage: Any, parts: list[tuple[str, int]], scale: float) -> list[tuple[A
 
     Returns:
         They follow one another as the triangles do, with center and radius of a disk [m], None for other shapes; None
-        for a stage of others, or with things of others in it.
+        for a stage that another program wrote or changed.
     """
     if "irsim" not in stage.GetRootLayer().customLayerData:
         return None
@@ -200,7 +200,7 @@ def _own(stage: Any, parts: list[tuple[str, int]], scale: float) -> list[tuple[A
 
 
 def _disk(prim: Any, scale: float) -> tuple[float, float, float] | None:
-    """Center and radius of the upright cylinder that collides in place of a mesh [m]; None if it is none."""
+    """Center and radius of the upright cylinder that collides in place of a mesh [m]; None for other prims."""
     if not prim or not prim.IsA(UsdGeom.Cylinder):
         return None
     time = Usd.TimeCode.EarliestTime()

@@ -57,7 +57,7 @@ def _region(lines: list[Floats], paint: list[Any]) -> Any:
 
 
 def _seen(regions: list[Any], dark: Any, names: list[str]) -> list[Outlined]:
-    """What is seen of dark paint below the light paint that came later."""
+    """The parts of dark paint that light paint, which came later, leaves visible."""
     light = np.flatnonzero(~dark)
     tree = shapely.STRtree([regions[k] for k in light])
     things = []

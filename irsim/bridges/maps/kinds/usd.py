@@ -26,7 +26,7 @@ __all__ = ["KIND"]
 _MAX_FILES = 10_000
 """Files in a ``.usdz``."""
 _MAX_OUTLINED = 10_000
-"""Triangles of a stage of irsim up to which outlines are made in seconds; a larger one is read as stages of others."""
+"""Triangles of a stage of irsim up to which outlines are made in seconds; a larger one is read as meshes."""
 _LISTED = 5
 """Names that a note lists."""
 
