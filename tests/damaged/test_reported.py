@@ -67,6 +67,16 @@ def test_maps_with_dates_and_tags_are_unreadable(workspace: Path, wrong: str) ->
     assert [code for code, _ in problems(workspace, "{name: ros, path: map.yaml}")] == ["map-unreadable"]
 
 
+@pytest.mark.parametrize("yaw", [0.0, 0.5])
+def test_a_map_of_infinite_size_is_unreadable(workspace: Path, yaw: float) -> None:
+    Image.new("L", (20, 20), 255).save(workspace / "plan.png")
+    text = MAP.replace("resolution: 0.5", "resolution: 1.0e+308").replace("0, 0, 0", f"0, 0, {yaw}")
+    (workspace / "map.yaml").write_text(text)
+    ((code, message),) = problems(workspace, "{name: ros, path: map.yaml}")
+    assert code == "map-unreadable"
+    assert "pixels of 1e+308 m make a map of infinite size" in message
+
+
 def test_a_map_with_a_flipped_byte_is_unreadable(workspace: Path) -> None:
     noise = np.random.default_rng(0).integers(0, 255, (30, 30), dtype=np.uint8)
     Image.fromarray(noise).save(workspace / "plan.png")

@@ -190,6 +190,8 @@ def ros_raster(path: Path, name: str, site: MapSite, unknown: float) -> Raster:
     pixels, _ = open_picture(find_picture(meta.image, path, site), meta.image, site)
     values = np.ascontiguousarray(upright(occupancy_of(pixels, meta)))
     width, height, origin = _extent(values.shape, meta)
+    if not all(map(math.isfinite, (width, height, *origin))):
+        raise _wrong(name, f"pixels of {meta.resolution:g} m make a map of infinite size")
     wanted = (
         site.width if site.width is not None else width,
         site.height if site.height is not None else height,
@@ -235,14 +237,18 @@ def find_picture(image: str, path: Path, site: MapSite) -> Path:
 
 
 def _extent(shape: tuple[int, ...], meta: RosMeta) -> tuple[float, float, tuple[float, float]]:
-    """Width, height and lower left corner [m] of the box round the (rotated) picture, in whole cells."""
+    """Width, height and lower left corner [m] of the box round the (rotated) picture, in whole cells.
+
+    Of pixels that are too large for numbers, they are infinite or not numbers.
+    """
     r, (x, y, yaw) = meta.resolution, meta.origin
     if yaw == 0.0:
         return shape[0] * r, shape[1] * r, (x, y)
     c, s = math.cos(yaw), math.sin(yaw)
-    corners = np.array([(0, 0), (shape[0], 0), (0, shape[1]), shape[:2]]) * r @ np.array([[c, s], [-s, c]])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    cells = np.ceil((high - low) / r - 1e-6)
+    with np.errstate(over="ignore", invalid="ignore"):
+        corners = np.array([(0, 0), (shape[0], 0), (0, shape[1]), shape[:2]]) * r @ np.array([[c, s], [-s, c]])
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        cells = np.ceil((high - low) / r - 1e-6)
     return float(cells[0] * r), float(cells[1] * r), (x + float(low[0]), y + float(low[1]))
 
 
