@@ -223,7 +223,9 @@ def replacing(path: Path, *, overwrite: bool = True) -> Iterator[Path]:
     make_folder_of(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
     try:
-        with apart(temporary) as written:
+        with _named(path, temporary), apart(temporary) as written:
+            if written == temporary:
+                _try(written)
             yield written
         if overwrite:
             os.replace(temporary, path)
@@ -231,6 +233,29 @@ def replacing(path: Path, *, overwrite: bool = True) -> Iterator[Path]:
             _name(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def _named(path: Path, temporary: Path) -> Iterator[None]:
+    """Have errors about a temporary file name the one that the user knows."""
+    try:
+        yield
+    except OSError as error:
+        if isinstance(error.filename, str | os.PathLike) and os.fspath(error.filename) == os.fspath(temporary):
+            error.filename = os.fspath(path)
+        raise
+
+
+def _try(temporary: Path) -> None:
+    """Make a file and delete it, before work is done for it: programs that encode films do not say why they fail."""
+    try:
+        create_bytes(temporary, mode=0o666)
+    except FileExistsError:  # another block writes the same file
+        return
+    except OSError as error:
+        error.strerror = f"the file cannot be written ({error.strerror}); name another one"
+        raise
+    temporary.unlink()
 
 
 def _name(temporary: Path, path: Path) -> None:
@@ -251,7 +276,7 @@ def new_folder(target: Path) -> Iterator[Path]:
     make_folder_of(target)
     temporary = target.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
     try:
-        with apart(temporary) as written:
+        with _named(target, temporary), apart(temporary) as written:
             written.mkdir()
             yield written
         os.rename(temporary, target)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
 
-from irsim.common.files import TargetError, replace_bytes, replacing, write_atomically, write_new
+from irsim.common.files import TargetError, new_folder, replace_bytes, replacing, write_atomically, write_new
 
 
 def stop(*_: object) -> None:
@@ -72,3 +73,20 @@ def test_of_two_programs_that_write_a_new_file_one_is_told(tmp_path: Path) -> No
     with pytest.raises(TargetError, match="file-exists"):
         first.__exit__(None, None, None)
     assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("run.csv", "second")]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs a folder in which nobody can make files")
+def test_a_file_that_cannot_be_written_is_named_as_the_user_did() -> None:
+    for suffix in (".gif", ".mp4", ".png"):
+        told = r"the file cannot be written .*; name another one"
+        with pytest.raises(OSError, match=told) as raised, replacing(Path(f"/proc/x{suffix}")):
+            pytest.fail("nothing is encoded")
+        assert raised.value.filename == f"/proc/x{suffix}"
+    with pytest.raises(OSError, match=r"/proc/x'$"), new_folder(Path("/proc/x")):
+        pytest.fail("nothing is written")
+
+
+def test_an_encoder_that_loses_its_file_names_it_as_the_user_did(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError) as raised, replacing(tmp_path / "x.gif") as temporary:
+        temporary.open("rb")
+    assert raised.value.filename == str(tmp_path / "x.gif")
