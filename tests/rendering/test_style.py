@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+import numpy as np
 import pytest
 
+from irsim.graphics.figure.figure import SceneFigure
+from irsim.graphics.scene.scene import Circle, Line, Mark, Region, Scene, Sector, Stroke
 from irsim.graphics.scene.style import STYLE_KEYS, Palette
 from irsim.scenario.model.plot import ObjectPlot
 from tests.env.driving import Make, take_steps
@@ -112,3 +116,26 @@ def test_a_misspelt_option_is_reported_once(make: Make, capsys: pytest.CaptureFi
 def test_an_unknown_mode_is_refused(make: Make) -> None:
     with pytest.raises(ValueError, match="dynamic, static, all"):
         make(EVERYTHING).render(mode="everything")
+
+
+@pytest.mark.parametrize("shape", ["sector", "line", "region", "circle"])
+def test_dashes_far_outside_the_view_are_not_made(shape: str) -> None:
+    far = 1e9
+    ring = np.array([(2.0, 2.0), (far, 2.0), (far, far), (2.0, far)])
+    geometry = {
+        "sector": Sector(2.0, 2.0, far, 0.0, math.pi / 2),
+        "line": Line(ring[:3]),
+        "region": Region([ring]),
+        "circle": Circle(2.0 - far, 5.0, far),
+    }[shape]
+    fill = "yellow" if shape == "region" else None
+    figure = SceneFigure((200, 200), 100, axis=False)
+    mark = Mark(0, "fov", geometry, fill, Stroke("red", 2.0, style=":"), 1.0, 2.0)
+    scene = Scene(0.0, "Running", (0.0, 10.0, 0.0, 10.0), None, [mark], [], [], [])
+    figure.show(scene, None)
+    pixels, _ = figure.pixels(tight=False)
+    colors = np.asarray(pixels)[..., :3].astype(int)
+    red = (colors[..., 0] > 200) & (colors[..., 1] < 100)
+    assert 20 < red.sum() < 2000
+    yellow = (colors[..., :2].min(axis=-1) > 200) & (colors[..., 2] < 50)
+    assert (yellow.mean() > 0.2) == (fill is not None)

@@ -76,6 +76,8 @@ _BEAM_WIDTH_PT = 1.0
 _TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
 _SOLID = ("-", "solid")
 _OPAQUE = 255.0
+_FAR, _NEAR = 40.0, 3.0
+"""Dashed lines that leave the view, made so many times larger, are cut to the view, made so many times larger."""
 
 
 def layer_key(part: str, zorder: float, round_caps: bool = False) -> tuple[Any, ...]:
@@ -146,6 +148,7 @@ class MarkLayer:
         ax.add_collection(self.artist, autolim=False)
         self.version = self.resting_scenes = 0
         self._filled: list[Mark] = []
+        self._paths: list[Path] = []
 
     def show(self, marks: Sequence[Mark], points_per_metre: float) -> None:
         """Show exactly these marks.
@@ -168,12 +171,34 @@ class MarkLayer:
         marks, scale, artist = list(self.artist.marks), self.artist.scale, self.artist
         same = _same_at_start(self._filled, marks)
         self._filled = marks
-        artist.set_paths([*artist.get_paths()[:same], *(geometry_path(mark.geometry) for mark in marks[same:])])
+        self._paths[same:] = [geometry_path(mark.geometry) for mark in marks[same:]]
+        pairs = zip(self._paths, marks, strict=True)
+        artist.set_paths([p if mark.stroke.style in _SOLID else _near_view(p, artist.axes) for p, mark in pairs])
         artist.set_facecolor(_colors([mark.fill for mark in marks], [mark.alpha for mark in marks]))
         artist.set_edgecolor(_colors([mark.stroke.color for mark in marks], [mark.alpha for mark in marks]))
         widths = [mark.stroke.width * (scale if mark.stroke.metric else 1.0) for mark in marks]
         artist.set_linewidth(_shorten(widths) or [0.0])
         artist.set_linestyle(_shorten([mark.stroke.style for mark in marks]) or ["-"])
+
+
+def _near_view(path: Path, axes: Any) -> Path:
+    """Return a path in world coordinates, cut to the surroundings of the view if it reaches far beyond them.
+
+    Agg makes every dash of a line, seen or not, which takes hours for a line of 1e9 m.
+    """
+    view, to_pixels = axes.bbox, axes.transData
+    reach = path.get_extents(to_pixels)
+    wide = view.expanded(_FAR, _FAR)
+    if np.size(path.vertices) == 0 or (wide.contains(*reach.min) and wide.contains(*reach.max)):
+        return path
+    around, seen = view.expanded(_NEAR, _NEAR), to_pixels.transform_path(path)
+    if path.codes is None:
+        seen = seen.cleaned(clip=tuple(around.extents), remove_nans=True)
+        seen = Path(seen.vertices[:-1], seen.codes[:-1])  # without the STOP at the end
+    else:
+        seen = seen.clip_to_bbox(around)
+    cut: Path = to_pixels.inverted().transform_path(seen)
+    return cut
 
 
 def _same_at_start(old: Sequence[Mark], new: Sequence[Mark]) -> int:
