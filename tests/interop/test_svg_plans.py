@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import ezdxf
-import ezdxf.addons.drawing as drawing
 import matplotlib
 import pytest
 from matplotlib.figure import Figure
@@ -18,6 +16,8 @@ from irsim.diagnostics.errors import ArgumentError
 
 pytestmark = pytest.mark.interop
 drawsvg = pytest.importorskip("drawsvg")
+ezdxf = pytest.importorskip("ezdxf")
+drawing = pytest.importorskip("ezdxf.addons.drawing")
 svgwrite = pytest.importorskip("svgwrite")
 pytest.importorskip("svgelements")
 
