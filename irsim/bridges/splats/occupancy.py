@@ -361,7 +361,11 @@ def _extent(above: Footprints, options: PlanOptions) -> tuple[tuple[float, float
             low[axis], high[axis] = above.center[order[np.minimum(ends, len(order) - 1)], axis]
     most = min(MAX_CELLS, options.max_cells)
     margin = 0 if options.bounds is not None else _MARGIN_CELLS
-    cell = fitting_side(options.cell, low, high, most, lambda side: _counts(low, high, side, margin)[1].prod() <= most)
+
+    def fits(side: float) -> bool:
+        return bool(_counts(low, high, side, margin)[1].prod() <= most)
+
+    cell = fitting_side(options.cell, low, high, most, fits)
     low, cells = _counts(low, high, cell, margin)
     if not (cells.min() >= 1 and cells.prod() <= most):
         what = f"the map would have {cells[0]:,.0f} x {cells[1]:,.0f} cells; 1 to {most:,} are possible"

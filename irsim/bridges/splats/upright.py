@@ -70,7 +70,7 @@ def upward_of(splats: Splats, up: Floats, *, unit: float = 1.0, opacity: float =
     squares = seen.scale.astype(np.float64) ** 2
     flat = squares.min(axis=1) < 0.1 * squares.sum(axis=1)
     center = seen.center.astype(np.float64) * unit
-    weight = seen.opacity * np.minimum(squares.sum(axis=1) * unit**2, 1.0)
+    weight = seen.opacity.astype(np.float64) * np.minimum(squares.sum(axis=1) * unit**2, 1.0)
     if flat.mean() >= 0.1:
         axes = rotation_matrices(seen.rotation[flat])
         thin = np.take_along_axis(axes, squares[flat].argmin(axis=1)[:, None, None], axis=2)[..., 0]
