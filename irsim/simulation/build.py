@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -69,10 +69,11 @@ def padded(values: Sequence[float], fill: float = 0.0) -> list[float]:
 def speed_controls(record: ObjectRecord) -> tuple[int, ...]:
     """Return the indices of the controls of an object that are speeds [m/s]; empty without a drive."""
     known = getattr(record.kinematics, "speeds", 0)
-    if known or record.kinematics is None:
-        return tuple(range(known))
-    drive = handler_class(str(getattr(record.kinematics, "name", "")))  # a drive written in Python
-    return () if drive is None else tuple(drive.translation_rows)
+    speeds: Iterable[int] = range(known)
+    if not known and record.kinematics is not None:
+        drive = handler_class(str(getattr(record.kinematics, "name", "")))  # a drive written in Python
+        speeds = () if drive is None else drive.translation_rows
+    return tuple(control for control in speeds if control < record.vel_dim)
 
 
 def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOptions]:

@@ -25,6 +25,6 @@ class YamlLimits:
     events: int = 2_000_000
     expansion: int = 500_000
     aliases: int = 1_000_000
-    keys: int = 10_000
+    keys: int = 100_000
     depth: int = 64
     problems: int = 100

@@ -72,7 +72,7 @@ FILE_AND_YAML: dict[str, Code] = {
     ),
     "too-many-events": Code(
         "too many values",
-        "The file has more values and brackets than the limit of 2 million, or more than 10,000 keys in a mapping.",
+        "The file has more values and brackets than the limit of 2 million, or more than 100,000 keys in a mapping.",
     ),
     "too-deep": Code("nested too deeply", "Lists and mappings are nested more than 64 levels deep."),
     "yaml-number-text": Code(
