@@ -19,6 +19,7 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import turn_of
 from irsim.bridges.maps import import_map, read_sidecar
 from irsim.cli.app import app
+from irsim.common.held import Folder
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.read import read
 from tests.bridges.maps.scenes import TWO_ROOMS, box, flat, house, mesh_set, storey, tile, write_glb, write_obj, y_up
@@ -302,3 +303,12 @@ def test_the_commands_and_the_program_of_the_page(tmp_path) -> None:
     assert seen["points"] == pytest.approx(np.array([[1, 1.2, -2], [1.5, 1.2, -2]]), abs=0.01)
     assert seen["back"] == pytest.approx(np.array([[1, 2, 1.2], [1.5, 2, 1.2]]), abs=1e-6)
     assert seen["matrices"].shape == (2, 4, 4)
+
+
+def test_a_held_folder_is_held_by_the_reader_too(tmp_path, monkeypatch) -> None:
+    write_glb(tmp_path / "flat.glb", flat())
+    (tmp_path / "outside.glb").symlink_to("/etc/hostname")
+    monkeypatch.setattr("irsim.common.held.PROCESS", [Folder(tmp_path)])
+    assert import_map(tmp_path / "flat.glb", tmp_path / "flat.yaml").occupied > 0
+    with pytest.raises(BridgeError, match="cannot be imported"):
+        import_map(tmp_path / "outside.glb", tmp_path / "outside.yaml")

@@ -22,6 +22,7 @@ from irsim.bridges.maps.grid import Triangles
 from irsim.bridges.maps.source import ImportLimits, unusable
 from irsim.common.child import ONE_THREAD, limit, python
 from irsim.common.extras import ExtraError
+from irsim.common.held import for_children
 from irsim.diagnostics.errors import CodedError
 
 __all__ = ["Refused", "read_apart", "serve", "shared_folder"]
@@ -65,6 +66,7 @@ def read_apart(
                 check=False,
                 cwd=folder,  # from which Python would import modules
                 env=os.environ | _ENVIRONMENT,
+                pass_fds=for_children()[1],
             )
         except subprocess.TimeoutExpired:
             what = f"reading it took longer than {limits.seconds:g} s"
