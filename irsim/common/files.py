@@ -147,11 +147,16 @@ def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:
 def write_atomically(target: Path, text: str) -> None:
     """Replace a text file in one step; links are followed, and the permissions of the file stay.
 
+    Devices and pipes, such as ``/dev/null``, are written to; they are not replaced by a file.
+
     Args:
         target: The file.
         text: Its new content.
     """
     target = target.resolve()
+    if target.exists() and not target.is_file() and not target.is_dir():
+        target.write_bytes(text.encode())
+        return
     mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
     replace_bytes(target, text.encode(), mode=mode)
 

@@ -90,3 +90,17 @@ def test_an_encoder_that_loses_its_file_names_it_as_the_user_did(tmp_path: Path)
     with pytest.raises(FileNotFoundError) as raised, replacing(tmp_path / "x.gif") as temporary:
         temporary.open("rb")
     assert raised.value.filename == str(tmp_path / "x.gif")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a pipe of POSIX")
+def test_pipes_and_devices_are_written_to_and_stay(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        write_atomically(pipe, "text")
+        assert os.read(reader, 100) == b"text"
+        assert pipe.is_fifo()
+    finally:
+        os.close(reader)
+    assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
