@@ -18,6 +18,7 @@ __all__ = [
     "capsule_points",
     "cylinder_points",
     "ellipsoid_points",
+    "moved",
     "slice_of_hull",
     "slice_of_mesh",
 ]
@@ -65,6 +66,12 @@ def ellipsoid_points(radii: Floats) -> Floats:
     parts = [np.column_stack([ring * math.cos(a), np.full(SEGMENTS, math.sin(a))]) for a in tilt]
     points: Floats = np.concatenate(parts) * radii
     return points
+
+
+def moved(place: Floats, points: Floats) -> Floats:
+    """(N, 3) points of a frame whose place in the world is a (4, 4) matrix, in the world."""
+    result: Floats = points @ place[:3, :3].T + place[:3, 3]
+    return result
 
 
 def slice_of_hull(points: Floats, low: float, high: float, *, rings: bool = False) -> Any:

@@ -24,6 +24,7 @@ from irsim.options.units import Degrees, Fraction, Meters
 __all__ = [
     "FREE",
     "HALF",
+    "NOT_FLAT",
     "OCCUPIED",
     "UNKNOWN",
     "ImportLimits",
@@ -238,6 +239,23 @@ class Outlines:
     climb: float | None = None
     notes: list[str] = field(default_factory=list)
     parts: list[Path] = field(default_factory=list)
+
+
+NOT_FLAT = (
+    "headroom",
+    "slope",
+    "ground",
+    "climb",
+    "up",
+    "rotate",
+    "level",
+    "height",
+    "meters_per_unit",
+    "opacity",
+    "lanes",
+    "root",
+)
+"""Options of surfaces and scales, which say nothing about flat files in meters, see :attr:`Kind.unused`."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 import shapely.affinity
 
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
+from irsim.bridges.maps.source import NOT_FLAT, ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
 from irsim.bridges.maps.xml_files import find_number, read_xml
 from irsim.common.arrays import Floats
 
@@ -92,19 +92,6 @@ KIND = Kind(
     suffixes=(),
     accepts=lambda head: False,  # it is known by its root element
     read=read,
-    unused=(
-        "headroom",
-        "slope",
-        "ground",
-        "climb",
-        "up",
-        "rotate",
-        "level",
-        "height",
-        "meters_per_unit",
-        "opacity",
-        "lanes",
-        "root",
-    ),
+    unused=NOT_FLAT,
     roots=("commonRoad",),
 )

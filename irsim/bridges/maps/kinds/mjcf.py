@@ -149,7 +149,7 @@ def _geom(model: _Model, given: dict[str, str], place: Floats, name: str) -> Non
             size = [*size[:1], half] if kind in ("capsule", "cylinder") else [*size[:1], *size[:1], half]
         if len(size) < _SIZES[kind] or min(size[: _SIZES[kind]]) <= 0:
             raise unusable(model.path, f"the geom {clean(name, 60)} of the type {kind} has no size that fits")
-        region = slices.slice_of_hull(_moved(at, _corners(kind, size)), *band, rings=kind != "box")
+        region = slices.slice_of_hull(slices.moved(at, _corners(kind, size)), *band, rings=kind != "box")
     if region is not None:
         circle = None
         if kind == "cylinder" and abs(at[2, 2]) > 1 - _UPRIGHT:
@@ -172,11 +172,6 @@ def _corners(kind: str, size: list[float]) -> Floats:
     return slices.ellipsoid_points(np.array(size[:3]) if kind == "ellipsoid" else np.full(3, size[0]))
 
 
-def _moved(place: Floats, points: Floats) -> Floats:
-    moved: Floats = points @ place[:3, :3].T + place[:3, 3]
-    return moved
-
-
 def _mesh(model: _Model, name: str, place: Floats, band: tuple[float, float]) -> object:
     """The outline of a mesh; None if nothing of it is in the way, or if it cannot be read, which is noted."""
     element = model.meshes.get(name)
@@ -190,7 +185,7 @@ def _mesh(model: _Model, name: str, place: Floats, band: tuple[float, float]) ->
         points = np.array(numbers_of(model.path, given, "vertex", 0))
         if len(points) % 3:
             raise unusable(model.path, f"the corners of the mesh '{clean(name, 60)}' must have 3 numbers each")
-        points = _moved(place, _moved(reference, points.reshape(-1, 3)) * scale)
+        points = slices.moved(place, slices.moved(reference, points.reshape(-1, 3)) * scale)
         if 0 < len(points) <= _MAX_CORNERS:
             return slices.slice_of_hull(points, *band)
         model.leave(f"hulls have 1 to {_MAX_CORNERS:,} corners", name)
@@ -203,8 +198,8 @@ def _mesh(model: _Model, name: str, place: Floats, band: tuple[float, float]) ->
     if triangles is None:
         return None
     model.parts.append(source)
-    points = _moved(reference, np.asarray(triangles, dtype=np.float64).reshape(-1, 3)) * scale
-    return slices.slice_of_mesh(_moved(place, points).reshape(-1, 3, 3), *band)
+    points = slices.moved(reference, np.asarray(triangles, dtype=np.float64).reshape(-1, 3)) * scale
+    return slices.slice_of_mesh(slices.moved(place, points).reshape(-1, 3, 3), *band)
 
 
 def _mesh_file(model: _Model, file: str) -> Path | None:

@@ -11,7 +11,7 @@ from typing import Any
 import shapely
 
 from irsim.bridges.maps.geographic import WALL, in_meters
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
+from irsim.bridges.maps.source import NOT_FLAT, ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
 from irsim.bridges.maps.xml_files import read_xml
 from irsim.common.text import clean
 
@@ -118,19 +118,6 @@ KIND = Kind(
     accepts=lambda head: False,  # it is known by its root element
     read=read,
     unknown="free",
-    unused=(
-        "headroom",
-        "slope",
-        "ground",
-        "climb",
-        "up",
-        "rotate",
-        "level",
-        "height",
-        "meters_per_unit",
-        "opacity",
-        "lanes",
-        "root",
-    ),
+    unused=NOT_FLAT,
     roots=("osm",),
 )

@@ -195,7 +195,9 @@ def _shape(world: _World, file: Path, shape: ET.Element, place: Floats, name: st
             read_one = _mesh if kind == "mesh" else _polyline
             region = read_one(world, file, geometry, place, (low, high), name)
         elif kind in _CONVEX:
-            region = slices.slice_of_hull(_moved(place, _CONVEX[kind](file, geometry)), low, high, rings=kind != "box")
+            region = slices.slice_of_hull(
+                slices.moved(place, _CONVEX[kind](file, geometry)), low, high, rings=kind != "box"
+            )
         else:
             if kind != "empty":
                 world.leave(f"shapes of the kind {clean(kind, 30)} are not read", name)
@@ -205,11 +207,6 @@ def _shape(world: _World, file: Path, shape: ET.Element, place: Floats, name: st
             if kind == "cylinder" and abs(place[2, 2]) > 1 - _UPRIGHT:
                 circle = (float(place[0, 3]), float(place[1, 3]), find_number(file, geometry, "radius"))
             world.things.append(Outlined(name, region, circle))
-
-
-def _moved(place: Floats, points: Floats) -> Floats:
-    moved: Floats = points @ place[:3, :3].T + place[:3, 3]
-    return moved
 
 
 def _turned(place: Floats, direction: list[float]) -> Floats:
@@ -245,12 +242,12 @@ def _polyline(
     if abs(place[2, 2]) < 1 - _UPRIGHT:
         solid = np.array([[x, y, z] for x, y in points for z in (0.0, height)])
         world.leave("tilted, so that its hull was taken", name)
-        return slices.slice_of_hull(_moved(place, solid), *band)
+        return slices.slice_of_hull(slices.moved(place, solid), *band)
     ends = sorted((float(place[2, 3]), float(place[2, 3] + place[2, 2] * height)))
     if len(points) < 3 or ends[1] <= band[0] or ends[0] >= band[1]:
         return None
     flat = np.column_stack([np.array(points), np.zeros(len(points))])
-    return shapely.make_valid(shapely.Polygon(_moved(place, flat)[:, :2]))
+    return shapely.make_valid(shapely.Polygon(slices.moved(place, flat)[:, :2]))
 
 
 def _mesh(world: _World, file: Path, geometry: ET.Element, place: Floats, band: tuple[float, float], name: str) -> Any:
@@ -269,7 +266,7 @@ def _mesh(world: _World, file: Path, geometry: ET.Element, place: Floats, band: 
     world.parts.append(located)
     scale = np.array(find_numbers(file, geometry.find("scale"), 3, (1, 1, 1)))
     points = np.asarray(triangles, dtype=np.float64).reshape(-1, 3) * scale
-    return slices.slice_of_mesh(_moved(place, points).reshape(-1, 3, 3), *band)
+    return slices.slice_of_mesh(slices.moved(place, points).reshape(-1, 3, 3), *band)
 
 
 KIND = Kind(
