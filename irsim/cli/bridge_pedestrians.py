@@ -18,6 +18,7 @@ from irsim.bridges.pedestrians.suite import Episodes
 from irsim.bridges.pedestrians.tracks import FORMATS, Window
 from irsim.cli.options import Json
 from irsim.cli.output import console
+from irsim.common.text import plural
 from irsim.diagnostics.errors import InputError
 
 __all__ = ["import_pedestrians"]
@@ -144,8 +145,8 @@ def import_pedestrians(
         typer.echo(json.dumps(asdict(converted)))
         return
     if converted.file is not None:
-        people = f"{converted.pedestrians} pedestrian{'' if converted.pedestrians == 1 else 's'}"
         where = "" if converted.into is None else f" in {Path(converted.into).name}"
+        people = plural(converted.pedestrians, "pedestrian")
         what = f": {people}{where}, {converted.rows} recorded places, {converted.duration:g} s"
         console().print(Text.assemble("wrote ", (converted.file, "bold"), what), soft_wrap=True)
     if converted.suite is not None:

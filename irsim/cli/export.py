@@ -13,6 +13,7 @@ from irsim.bridges.export.export import export_run
 from irsim.bridges.export.registry import format_names
 from irsim.cli.options import Json
 from irsim.cli.output import console, print_json, progress
+from irsim.common.text import plural
 from irsim.policies.converters.convert import parse_options
 
 __all__ = ["export"]
@@ -98,7 +99,7 @@ def export(
         return
     size = f"{result.bytes / 1e6:.2f} MB" if result.bytes >= 1e5 else f"{result.bytes / 1e3:.0f} kB"
     count = f"{len(result.run_ids)} runs, " if len(result.run_ids) > 1 else ""
-    who = f"{len(result.objects)} object{'s' * (len(result.objects) != 1)}"
+    who = plural(len(result.objects), "object")
     console().print(
         Text.assemble("wrote ", (result.file, "bold"), f" ({size}: {count}{who}, {result.steps} steps)"), soft_wrap=True
     )

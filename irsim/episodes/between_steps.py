@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from irsim.common.text import metres, seconds
+from irsim.common.text import metres, plural, seconds
 from irsim.episodes.scene_summary import called
 from irsim.simulation.events import BETWEEN_STEPS, Event, partner_of
 
@@ -104,7 +104,7 @@ def between_steps_message(
 def others_between_steps_message(contacts: BetweenSteps) -> str | None:
     """How often objects besides robots touched each other between two steps; None if none did."""
     count = len(contacts.of_others)
-    return f"{count} contact{'s' * (count != 1)} between steps without a robot" if count else None
+    return f"{plural(count, 'contact')} between steps without a robot" if count else None
 
 
 def _advice(simulation: Simulation, event: Event) -> str:

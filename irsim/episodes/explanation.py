@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from irsim.common.text import listed, quoted, seconds
+from irsim.common.text import listed, plural, quoted, seconds
 from irsim.episodes.between_steps import between_steps_message, others_between_steps_message
 from irsim.episodes.facts import EpisodeFacts, first_collision
 from irsim.episodes.incidents import (
@@ -177,7 +177,7 @@ def others_arrived_message(scenario: ResolvedScenario, events: Sequence[Event]) 
     if not walking:
         return None
     arrived = walking & {event.object for event in events if event.kind == "arrival"}
-    return f"{len(arrived)} of {len(walking)} moving obstacle{'s' * (len(walking) != 1)} arrived"
+    return f"{len(arrived)} of {plural(len(walking), 'moving obstacle')} arrived"
 
 
 def _others_standing_message(facts: EpisodeFacts) -> str | None:
@@ -233,7 +233,7 @@ def reason_message(facts: EpisodeFacts, robots: list[RobotResult], source: Horiz
         shown = late[:_MAX_NAMED]
         states = [f"{quoted(robot.name)} {_state(facts, rows[robot.name], robot)}" for robot in shown]
         rest = len(late) - _MAX_NAMED
-        more = f" and {rest} more robot{'s' * (rest != 1)}" if rest > 0 else ""
+        more = f" and {plural(rest, 'more robot')}" if rest > 0 else ""
         reasons.append(f"at {limit} {', '.join(states)}{more}")
     if still := [robot for robot in robots if robot.outcome == "timeout" and robot.name in facts.parked]:
         names = listed([quoted(robot.name) for robot in still], _MAX_NAMED)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.common.text import listed, metres, quoted, seconds
+from irsim.common.text import listed, metres, plural, quoted, seconds
 from irsim.episodes.progress import has_one_end
 from irsim.results.episode import Left
 from irsim.simulation.build import steps_until
@@ -96,9 +96,9 @@ def contacts_message(contacts: Sequence[Event], *, brief: bool) -> str | None:
     """
     if not contacts:
         return None
-    first, many = contacts[0], len(contacts) > 1
-    hit = f"{'first ' * many}{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
-    return f"{len(contacts)} contact{'s' * many} between people" + ("" if brief else f" ({hit})")
+    first = contacts[0]
+    hit = f"{'first ' * (len(contacts) > 1)}{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
+    return f"{plural(len(contacts), 'contact')} between people" + ("" if brief else f" ({hit})")
 
 
 def jumps_message(jumps: dict[str, Event], nearest: Mapping[str, float]) -> str | None:
@@ -272,6 +272,6 @@ def closeness_message(robots: Sequence[RobotResult]) -> str | None:
     if not names:
         return None
     (name, other), more = names[0], len(names) - 1
-    others = f" and {more} more robot{'s' * (more > 1)}" if more else ""
+    others = f" and {plural(more, 'more robot')}" if more else ""
     beside = f" {other}" if other else " something"
     return f"{quoted(name)}{others} came within 5 mm of{beside} without touching: that is not a collision"

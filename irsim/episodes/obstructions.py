@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.text import quoted, seconds
+from irsim.common.text import plural, quoted, seconds
 from irsim.navigation.clearances import approaches
 from irsim.scenario.resolve.braking import follow_text
 from irsim.scenario.yaml.formatting import flow
@@ -110,7 +110,7 @@ def jam_message(simulation: Simulation, held: dict[str, Event]) -> str | None:
     first = min(held.values(), key=lambda event: event.step)
     hit = f"{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
     return (
-        f"{len(held)} of {count} moving obstacle{'s' * (count != 1)} {'was' if len(held) == 1 else 'were'} stopped by "
+        f"{len(held)} of {plural(count, 'moving obstacle')} {'was' if len(held) == 1 else 'were'} stopped by "
         f"a collision ({'first ' * (len(held) > 2)}{hit}): collision_mode: unobstructed_obstacles lets them go on"
     )
 

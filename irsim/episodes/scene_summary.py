@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from irsim.common.text import quoted
+from irsim.common.text import plural, quoted
 from irsim.components.maps._grid import Walls
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
@@ -65,7 +65,7 @@ def in_words(counts: dict[str, int], *, robots: bool = True, sensors: bool = Tru
 
 
 def _count_of(count: int, noun: str) -> str:
-    return f"{count or 'no'} {noun}{'s' * (count != 1)}"
+    return plural(count, noun) if count else f"no {noun}s"
 
 
 def _percent(part: int, whole: int) -> str:

@@ -7,7 +7,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict
 
 from irsim.common.event_kinds import BETWEEN_STEPS
-from irsim.common.text import clean, listed
+from irsim.common.text import clean, listed, plural
 from irsim.results.episode import EventRecord, RobotResult
 
 __all__ = ["ConciseEvent", "ConciseRobot", "ConciseRun", "is_command", "rounded"]
@@ -73,13 +73,13 @@ class ConciseRobot(BaseModel):
             if self.min_clearance < 0:
                 near = f"overlapped {other} by {-self.min_clearance:g} m when they collided"
             facts.append(near + at + (" at the ends of steps" if count else ""))
-        facts.append(f"{self.collision_count} collision{'s' * (self.collision_count != 1)}")
+        facts.append(plural(self.collision_count, "collision"))
         if count:
             passed = [repr(name) for name in more.get("passed_through", [])]
             through = f" (passed through {listed(passed, 3)})" if passed else ""
-            facts.append(f"{count} contact{'s' * (count != 1)} between steps{through}")
+            facts.append(f"{plural(count, 'contact')} between steps{through}")
         if self.infeasible_steps is not None:
-            many = f"{self.infeasible_steps} step{'s' * (self.infeasible_steps != 1)}"
+            many = plural(self.infeasible_steps, "step")
             end = "but no contact"
             if self.collision_count or count:
                 end = "and it touched something: more room or slower objects would help"

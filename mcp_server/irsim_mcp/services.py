@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from irsim.common.text import clean
+from irsim.common.text import clean, plural
 from irsim_mcp.answers import WorkerResult, failure
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
@@ -316,7 +316,7 @@ def as_failure(error: dict[str, Any], source: str | None) -> Exception:
             line = "" if item["line"] is None else f" line {item['line']}"
             each.append(f"{file}{item['where']}{line} {item['code']}: {item['what']}")
         count = error["errors"]
-        what = f"{count} error{'s' * (count != 1)}: {'; '.join(each)}"
+        what = f"{plural(count, 'error')}: {'; '.join(each)}"
         return failure(
             "invalid-scenario", what, where=argument, fix="validate_scenario lists every problem with its fix"
         )

@@ -10,6 +10,7 @@ from typing import Any
 import yaml
 
 from irsim.bundled.templates.fill import format_value, replace_values
+from irsim.common.text import plural
 from irsim.diagnostics.diagnostic import Path
 from irsim_evals.baselines.language import BEHAVIORS, DRIVES, NOUNS, first, has, plain, quantities
 from irsim_evals.baselines.layouts import lidar
@@ -244,7 +245,7 @@ def _add_obstacles(source: str, data: Any, part: str) -> Edited:
     size = float(shape.get("radius") or shape.get("length") or 1.0)
     for spot in _free_spots(data, number, size):
         source = add(source, (), "obstacle", {"shape": shape, "state": [*spot, 0]})
-    return source, [f"{number} more obstacle{'s' * (number > 1)}"]
+    return source, [plural(number, "more obstacle")]
 
 
 def _free_spots(data: Any, number: int, size: float) -> list[tuple[float, float]]:

@@ -11,7 +11,7 @@ import shapely
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.source import Outlined
 from irsim.common.arrays import Floats
-from irsim.common.text import clean
+from irsim.common.text import clean, plural
 from irsim.options.units import MAX_VERTICES
 
 __all__ = ["entries_of"]
@@ -57,11 +57,11 @@ def entries_of(things: list[Outlined]) -> tuple[list[str], list[str]]:
     notes = []
     if len(kept) < len(things):
         count = len(things) - len(kept)
-        notes.append(f"left out: {count} outline{'s' * (count != 1)} within another one, which stands there as well")
+        notes.append(f"left out: {plural(count, 'outline')} within another one, which stands there as well")
     if small:
-        notes.append(f"left out: {small} outline{'s' * (small != 1)} smaller than {_SMALLEST * 1e4:g} cm²")
+        notes.append(f"left out: {plural(small, 'outline')} smaller than {_SMALLEST * 1e4:g} cm²")
     if cut:
-        notes.append(f"cut into pieces, as obstacles have no holes: {cut} outline{'s' * (cut != 1)}")
+        notes.append(f"cut into pieces, as obstacles have no holes: {plural(cut, 'outline')}")
     return lines, notes
 
 

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import Bools, Grid, Ints
+from irsim.bridges.maps.source import OCCUPIED, Occupancy, known_free
 from irsim.bridges.maps.voxels import Surfaces
 
-__all__ = ["Level", "connected", "find_levels", "masked_regions", "numbered"]
+__all__ = ["Level", "connected", "find_levels", "keep_part", "masked_regions", "numbered"]
 
 _SMALLEST_AREA = 0.5
 """Connected surfaces smaller than this are not a level of their own [m²]."""
@@ -112,6 +114,27 @@ def masked_regions(free: Bools) -> tuple[Ints, Ints]:
     part, sizes = numbered(connected(int(free.sum()), a, b), np.arange(int(free.sum())))
     index[free] = part
     return index, sizes
+
+
+def keep_part(result: Occupancy, seed_point: tuple[float, float] | None) -> None:
+    """Note how large the connected free parts of a map are, and keep only the one at a seed point.
+
+    Raises:
+        BridgeError: The seed point is not free.
+    """
+    free = known_free(result.values)
+    number, sizes = masked_regions(free)
+    result.regions = [float(size) * result.grid.resolution**2 for size in sizes]
+    if seed_point is None:
+        return
+    x, y = seed_point
+    column = result.grid.column_at(x, y)
+    kept = -1 if column is None else int(number.reshape(-1)[column])
+    if kept < 0:
+        what = f"the seed point ({x:g}, {y:g}) is not free in this map"
+        raise BridgeError("bridge-file", what, "give a free place, or no seed point")
+    result.kept = kept
+    result.values = np.where(free & (number != kept), OCCUPIED, result.values)
 
 
 def edges(surfaces: Surfaces, grid: Grid, climb: float, headroom: float) -> tuple[Ints, Ints]:

@@ -9,7 +9,7 @@ import shapely
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import SIDES, Bools, Grid, fits_into, fitting_side, grid_over, rows_of, side_notes
-from irsim.bridges.maps.regions import masked_regions
+from irsim.bridges.maps.regions import keep_part
 from irsim.bridges.maps.source import (
     FREE,
     OCCUPIED,
@@ -82,7 +82,7 @@ def occupancy_of_outlines(outlines: Outlines, options: ImportOptions, limits: Im
     result = Occupancy(values, grid, outlines.frame, outlines.height, outlines.meters_per_unit, notes=notes)
     result.things = things
     result.headroom, result.climb, result.parts = outlines.headroom, outlines.climb, outlines.parts
-    _pick_part(result, options)
+    keep_part(result, options.seed_point)
     return result
 
 
@@ -141,18 +141,3 @@ def _painted(region: Any, grid: Grid, *, touched: bool = False) -> Bools:
     for _, i, j, _ in rows_of(np.clip(corners, 0, [grid.nx - 1e-6, grid.ny - 1e-6]), at_centers=not touched):
         result[i, j] = True
     return result
-
-
-def _pick_part(result: Occupancy, options: ImportOptions) -> None:
-    """Say how large the connected free parts are, and keep the one at the seed point."""
-    number, sizes = masked_regions(result.values == FREE)
-    result.regions = [float(size) * result.grid.resolution**2 for size in sizes]
-    if options.seed_point is None:
-        return
-    x, y = options.seed_point
-    column = result.grid.column_at(x, y)
-    kept = -1 if column is None else int(number.reshape(-1)[column])
-    if kept < 0:
-        raise BridgeError("bridge-file", f"the seed point ({x:g}, {y:g}) is not free in this map", "give a free place")
-    result.kept = kept
-    result.values[(result.values == FREE) & (number != kept)] = OCCUPIED

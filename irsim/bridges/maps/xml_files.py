@@ -1,19 +1,30 @@
-"""Elements of XML files that other people made, without entities, addresses and endless depth."""
+"""Elements of XML files that other people made, without entities, addresses and endless depth.
+
+:class:`Collection` is what importers of simulators' worlds collect of them.
+"""
 
 from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 from xml.parsers import expat
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.source import ImportLimits, unusable
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Outlined, Outlines, unusable
+from irsim.common.arrays import Floats
+from irsim.common.text import clean, plural
 
-__all__ = ["find_number", "find_numbers", "read_xml"]
+__all__ = ["UPRIGHT", "Collection", "find_number", "find_numbers", "read_xml"]
 
 _MAX_DEPTH = 256
 """Elements inside each other."""
+_MAX_NAMES = 5
+"""Names of elements that a note about what was left out lists."""
+UPRIGHT = 1e-6
+"""Difference of the cosine of a tilt from 1, below which a thing is upright."""
 _LEADING = re.compile(rb"\A(?:\xef\xbb\xbf)?(?:\s|<!--(?:(?!-->).)*-->)*(?=<\?xml)", re.DOTALL)
 
 
@@ -104,3 +115,56 @@ def find_number(path: Path, parent: ET.Element, name: str, default: float | None
     if child is None and default is None:
         raise unusable(path, f"<{parent.tag}> has no <{name}>")
     return find_numbers(path, child, 1, () if default is None else (default,))[0]
+
+
+@dataclass(kw_only=True)
+class Collection:
+    """What an import collects of the world of another simulator.
+
+    Attributes:
+        path: The file.
+        options, limits: Options and limits of the import.
+        things: Outlines of the obstacles.
+        parts: Files that were read.
+        left: Reason -> names of what was left out for it.
+    """
+
+    path: Path
+    options: ImportOptions
+    limits: ImportLimits
+    things: list[Outlined] = field(default_factory=list)
+    parts: list[Path] = field(default_factory=list)
+    left: dict[str, list[str]] = field(default_factory=dict)
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """Heights between which a robot meets what stands there [m]."""
+        floor = self.options.height or 0.0
+        return floor + self.options.climb, floor + self.options.headroom
+
+    def leave(self, why: str, name: str) -> None:
+        """Note that something is left out."""
+        self.left.setdefault(why, []).append(clean(name, 80))
+
+    def add(self, name: str, region: Any, place: Floats, radius: float | None) -> None:
+        """Collect an outline.
+
+        Args:
+            name: Name of the thing.
+            region: Its area [m]; None if nothing of it is in the way.
+            place: (4, 4) its pose in the world.
+            radius: Radius of a cylinder [m], which is a disk if it is upright; None for other shapes.
+        """
+        if region is not None:
+            upright = radius is not None and abs(place[2, 2]) > 1 - UPRIGHT
+            disk = (float(place[0, 3]), float(place[1, 3]), radius) if upright and radius is not None else None
+            self.things.append(Outlined(name, region, disk))
+
+    def outlines(self) -> Outlines:
+        """The result, with a note on each reason why something was left out."""
+        notes = []
+        for why, names in self.left.items():
+            each = sorted(set(names))
+            shown = ", ".join(each[:_MAX_NAMES]) + (", …" if len(each) > _MAX_NAMES else "")
+            notes.append(f"left out: {plural(len(names), 'element')} ({shown}): {why}")
+        return Outlines(self.things, height=self.options.height or 0.0, notes=notes, parts=self.parts)

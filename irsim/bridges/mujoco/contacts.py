@@ -20,6 +20,7 @@ from irsim.bridges.mujoco.physics import Physics
 from irsim.bridges.solids import merged_cells
 from irsim.common.files import write_atomically
 from irsim.common.outline import BodyPart, Circle, Line
+from irsim.common.text import plural
 
 __all__ = ["Contact", "Contacts", "MujocoReport", "log_report", "write_report"]
 
@@ -189,7 +190,7 @@ class MujocoReport:
 
     def lines(self) -> list[str]:
         """The main numbers as text."""
-        objects = f"{len(self.objects)} object{'s' * (len(self.objects) != 1)}"
+        objects = plural(len(self.objects), "object")
         result = [
             (
                 f"mujoco: moved {objects} for {self.simulated_s:.1f} s in {self.wall_s:.1f} s; in a step robots are "

@@ -10,6 +10,7 @@ import numpy as np
 
 from irsim.common.arguments import as_given
 from irsim.common.arrays import Floats
+from irsim.common.text import plural
 from irsim.diagnostics.errors import ArgumentError, PolicyLostError
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Episode, Policy
@@ -83,7 +84,7 @@ class ProcessPolicy(Policy):
         except (TypeError, ValueError):
             raise self._lost("decided something that is not a table of numbers", _ANSWERS) from None
         if result.ndim != 2 or len(result) != len(observations):
-            rows = f"{len(observations)} row{'s' * (len(observations) != 1)}"
+            rows = plural(len(observations), "row")
             raise self._lost(f"decided an array of shape {result.shape} where {rows} of numbers are expected", _ANSWERS)
         if not np.isfinite(result).all():
             raise self._lost("decided numbers that are not finite, or null", _ANSWERS)

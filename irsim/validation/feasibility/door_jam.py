@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from irsim.common.text import metres
+from irsim.common.text import metres, plural
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.reachability import Leg
@@ -59,7 +59,7 @@ def _may_jam(mover: Mover) -> bool:
 
 def _report(users: list[Mover], width: float, place: tuple[float, float], tally: Tally) -> None:
     first = users[0]
-    others = f"{len(users) - 1} other robot{'s' * (len(users) > 2)}"
+    others = plural(len(users) - 1, "other robot")
     x, y = place
     tally.add(
         "door-jam",

@@ -10,7 +10,7 @@ from mcp.server.mcpserver import Context
 from mcp.types import ImageContent, TextContent
 from pydantic import Field
 
-from irsim.common.text import clean, metres
+from irsim.common.text import clean, metres, plural
 from irsim.results.concise import is_command
 from irsim.results.picture import MAX_MOMENTS, MIN_MOMENTS, view_message
 from irsim.validation.scene_text import scene_lines
@@ -167,7 +167,7 @@ def _line(
         parts.append(f"{rest} more moving obstacles")
     warnings = sum(item["severity"] == "warning" for item in scene["warnings"])
     if warnings and not brief:
-        parts.append(f"{warnings} warning{'s' * (warnings != 1)}, see validate_scenario")
+        parts.append(f"{plural(warnings, 'warning')}, see validate_scenario")
     return "; ".join(parts) + f". {_source(scene, run_id)}".rstrip()
 
 

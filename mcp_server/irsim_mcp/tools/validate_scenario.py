@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.common.text import clean, names_if_different, rounded_pair, seconds, shorten_pair
+from irsim.common.text import clean, names_if_different, plural, rounded_pair, seconds, shorten_pair
 from irsim.validation.diff.keys import place
 from irsim_mcp.answers import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
@@ -122,7 +122,7 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
     if data["hints"] and not detailed:
         codes = dict.fromkeys(item["code"] for item in data["findings"] if item["severity"] == "hint")
         named = ", ".join(list(codes)[:_MAX_HINT_CODES])
-        summary += f"; {data['hints']} hint{'s' * (data['hints'] != 1)}"
+        summary += f"; {plural(data['hints'], 'hint')}"
         summary += "" if few else f" ({named}) with response_format=detailed"
     issues = _first_issues([_issue(item, detailed) for item in findings[:most]], most_characters)
     cut = len(findings) - len(issues)

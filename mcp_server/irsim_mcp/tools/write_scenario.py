@@ -8,7 +8,7 @@ import anyio.to_thread
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.common.text import clean
+from irsim.common.text import clean, plural
 from irsim_mcp.services import Services
 from irsim_mcp.tool import StrictTool, strict
 
@@ -68,4 +68,4 @@ def tool(services: Services) -> StrictTool:
 
 def _contents(checked: dict[str, Any]) -> str:
     warnings = checked["warnings"]
-    return f"{checked['contents']}, {warnings or 'no'} warning{'s' * (warnings != 1)}"
+    return f"{checked['contents']}, {plural(warnings, 'warning') if warnings else 'no warnings'}"

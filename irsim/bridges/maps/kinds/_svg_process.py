@@ -20,6 +20,7 @@ from irsim.bridges.maps.kinds._svg_tree import Cleaned, cleaned
 from irsim.bridges.maps.source import ImportLimits
 from irsim.bridges.maps.xml_files import read_xml
 from irsim.common.arrays import Floats
+from irsim.common.text import plural
 
 __all__ = ["load", "main"]
 
@@ -73,7 +74,7 @@ def load(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
         notes += _unit_notes(root, size, drawing)
     rows, parts, paints, light = _painted(drawing, tree, unit)
     if light:
-        notes.append(f"{light} area{'s' * (light != 1)} in white or nearly white count as free ground")
+        notes.append(f"{plural(light, 'area')} in white or nearly white count as free ground")
     points = np.array(rows, dtype=np.float64).reshape(-1, 3)
     points[:, 2] = (0.0 if size is None else size[1]) - points[:, 2]
     points[:, 1:] *= unit

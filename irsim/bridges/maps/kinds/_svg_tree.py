@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from irsim.bridges.maps.source import unusable
-from irsim.common.text import clean
+from irsim.common.text import clean, plural
 
 __all__ = ["Cleaned", "cleaned"]
 
@@ -56,7 +56,7 @@ def cleaned(path: Path, root: ET.Element, layers: list[str] | None) -> Cleaned:
         listed = ", ".join(f"{count} {what}" for what, count in left.most_common(6))
         notes.append(f"left out: {listed}")
     if clipped:
-        notes.append(f"what clip paths cut off is part of the map: {clipped} element{'s' * (clipped != 1)}")
+        notes.append(f"what clip paths cut off is part of the map: {plural(clipped, 'element')}")
     return Cleaned(root, notes)
 
 

@@ -14,6 +14,7 @@ import shapely.affinity
 from irsim.bridges.maps.source import NOT_FLAT, ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
 from irsim.bridges.maps.xml_files import find_number, read_xml
 from irsim.common.arrays import Floats
+from irsim.common.text import plural
 
 __all__ = ["KIND"]
 
@@ -35,7 +36,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
         if still:
             things += [Outlined(item.get("id", ""), region) for region in _placed(path, item)]
     lanes = [_lanelet(path, item) for item in root.iterfind("lanelet") if item.find("leftBound") is not None]
-    notes = [f"left out: {moving} obstacle{'s' * (moving != 1)} that can move"] if moving else []
+    notes = [f"left out: {plural(moving, 'obstacle')} that can move"] if moving else []
     return Outlines(things, free=shapely.union_all(lanes) if lanes else None, notes=notes)
 
 

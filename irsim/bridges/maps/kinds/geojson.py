@@ -15,7 +15,7 @@ import shapely.geometry
 from irsim.bridges.maps.geographic import WALL, are_degrees, in_meters
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
 from irsim.common.records import ContentError, read_json
-from irsim.common.text import clean
+from irsim.common.text import clean, plural
 
 __all__ = ["KIND"]
 
@@ -77,7 +77,7 @@ def _chosen(path: Path, features: list[dict[str, Any]]) -> tuple[list[Outlined],
         name = properties.get("name") if isinstance(properties, dict) else None
         things += [Outlined(clean(name, 80) if isinstance(name, str) else "", part) for part in parts]
     if points:
-        notes.append(f"left out: {points} feature{'s' * (points != 1)} without an area or a line")
+        notes.append(f"left out: {plural(points, 'feature')} without an area or a line")
     return things, notes
 
 

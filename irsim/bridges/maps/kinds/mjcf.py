@@ -7,7 +7,7 @@ robots, and stay out. Meshes count with their surface, where MuJoCo would take t
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,50 +16,32 @@ from irsim.bridges.maps import slices
 from irsim.bridges.maps.kinds import mesh
 from irsim.bridges.maps.kinds._mjcf_text import Classes, inside, numbers_of, place_of, rotation_along, whole_model
 from irsim.bridges.maps.kinds._named_meshes import read_named_mesh
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlines, unusable
+from irsim.bridges.maps.xml_files import Collection
 from irsim.common.arrays import Floats
 from irsim.common.text import clean
 
 __all__ = ["KIND"]
 
-_LISTED = 5
-_UPRIGHT = 1e-6
 _MAX_CORNERS = 2000
 """Corners of a mesh without faces, of which all pairs are looked at."""
 _ENDS = ("joint", "jointinparent", "site", "refsite", "cranksite", "slidersite", "body", "tendon")
 """Attributes by which actuators name what they move."""
 
 
-@dataclass
-class _Model:
-    """A model, and the outlines that are collected of it.
+@dataclass(kw_only=True)
+class _Model(Collection):
+    """A model, and what is collected of it.
 
     Attributes:
-        path: The file.
-        options, limits: How the import is done.
-        root: The element with everything that is included.
         classes: The defaults.
         driven: Names of joints, sites and bodies that actuators move.
         meshes: Name of a mesh -> its element.
-        things: Outlines of what stands in the way.
-        parts: Files that were read.
-        left: Reason -> names of what was left out for it.
     """
 
-    path: Path
-    options: ImportOptions
-    limits: ImportLimits
-    root: ET.Element
     classes: Classes
     driven: set[str]
     meshes: dict[str, ET.Element]
-    parts: list[Path]
-    things: list[Outlined] = field(default_factory=list)
-    left: dict[str, list[str]] = field(default_factory=dict)
-
-    def leave(self, why: str, name: str) -> None:
-        """Note that something is left out."""
-        self.left.setdefault(why, []).append(clean(name, 80))
 
 
 def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
@@ -70,14 +52,18 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
     """
     root, parts = whole_model(path, options.root, limits)
     meshes = {item.get("name") or Path(item.get("file", "")).stem: item for item in root.iterfind("asset/mesh")}
-    model = _Model(path, options, limits, root, Classes(path, root), _driven(root), meshes, parts)
+    model = _Model(
+        path=path,
+        options=options,
+        limits=limits,
+        parts=parts,
+        classes=Classes(path, root),
+        driven=_driven(root),
+        meshes=meshes,
+    )
     for world in root.iterfind("worldbody"):
         _body(model, world, np.eye(4), "main", "")
-    notes = []
-    for why, names in model.left.items():
-        listed = ", ".join(sorted(set(names))[:_LISTED]) + (", …" if len(set(names)) > _LISTED else "")
-        notes.append(f"left out: {len(names)} element{'s' * (len(names) != 1)} ({listed}): {why}")
-    return Outlines(model.things, height=options.height or 0.0, notes=notes, parts=model.parts)
+    return model.outlines()
 
 
 def _driven(root: ET.Element) -> set[str]:
@@ -124,15 +110,13 @@ def _body(model: _Model, body: ET.Element, place: Floats, childclass: str, name:
 def _geom(model: _Model, given: dict[str, str], place: Floats, name: str) -> None:
     """Collect the outline of a geom by its attributes and the defaults of its class."""
     kind = given.get("type", "sphere")
-    low = (model.options.height or 0.0) + model.options.climb
-    band = (low, low - model.options.climb + model.options.headroom)
     at = place @ place_of(model.path, model.classes, given)
     if kind == "plane":
         if at[2, 2] < 0.9:
             model.leave("planes have no end", name)
         return
     if kind == "mesh":
-        region = _mesh(model, given.get("mesh", ""), at, band)
+        region = _mesh(model, given.get("mesh", ""), at)
     elif kind not in _SIZES:
         model.leave(f"geoms of the type {clean(kind, 30)} are not read", name)
         return
@@ -149,12 +133,8 @@ def _geom(model: _Model, given: dict[str, str], place: Floats, name: str) -> Non
             size = [*size[:1], half] if kind in ("capsule", "cylinder") else [*size[:1], *size[:1], half]
         if len(size) < _SIZES[kind] or min(size[: _SIZES[kind]]) <= 0:
             raise unusable(model.path, f"the geom {clean(name, 60)} of the type {kind} has no size that fits")
-        region = slices.slice_of_hull(slices.moved(at, _corners(kind, size)), *band, rings=kind != "box")
-    if region is not None:
-        circle = None
-        if kind == "cylinder" and abs(at[2, 2]) > 1 - _UPRIGHT:
-            circle = (float(at[0, 3]), float(at[1, 3]), size[0])
-        model.things.append(Outlined(name, region, circle))
+        region = slices.slice_of_hull(slices.moved(at, _corners(kind, size)), *model.band, rings=kind != "box")
+    model.add(name, region, at, size[0] if kind == "cylinder" else None)
 
 
 _SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "ellipsoid": 3, "box": 3}
@@ -172,7 +152,7 @@ def _corners(kind: str, size: list[float]) -> Floats:
     return slices.ellipsoid_points(np.array(size[:3]) if kind == "ellipsoid" else np.full(3, size[0]))
 
 
-def _mesh(model: _Model, name: str, place: Floats, band: tuple[float, float]) -> object:
+def _mesh(model: _Model, name: str, place: Floats) -> object:
     """The outline of a mesh; None if nothing of it is in the way, or if it cannot be read, which is noted."""
     element = model.meshes.get(name)
     if element is None:
@@ -187,7 +167,7 @@ def _mesh(model: _Model, name: str, place: Floats, band: tuple[float, float]) ->
             raise unusable(model.path, f"the corners of the mesh '{clean(name, 60)}' must have 3 numbers each")
         points = slices.moved(place, slices.moved(reference, points.reshape(-1, 3)) * scale)
         if 0 < len(points) <= _MAX_CORNERS:
-            return slices.slice_of_hull(points, *band)
+            return slices.slice_of_hull(points, *model.band)
         model.leave(f"hulls have 1 to {_MAX_CORNERS:,} corners", name)
         return None
     source = _mesh_file(model, given.get("file", ""))
@@ -199,7 +179,7 @@ def _mesh(model: _Model, name: str, place: Floats, band: tuple[float, float]) ->
         return None
     model.parts.append(source)
     points = slices.moved(reference, np.asarray(triangles, dtype=np.float64).reshape(-1, 3)) * scale
-    return slices.slice_of_mesh(slices.moved(place, points).reshape(-1, 3, 3), *band)
+    return slices.slice_of_mesh(slices.moved(place, points).reshape(-1, 3, 3), *model.band)
 
 
 def _mesh_file(model: _Model, file: str) -> Path | None:

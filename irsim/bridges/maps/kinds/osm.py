@@ -13,7 +13,7 @@ import shapely
 from irsim.bridges.maps.geographic import WALL, in_meters
 from irsim.bridges.maps.source import NOT_FLAT, ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
 from irsim.bridges.maps.xml_files import read_xml
-from irsim.common.text import clean
+from irsim.common.text import clean, plural
 
 __all__ = ["KIND"]
 
@@ -63,7 +63,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
             widths.append(WALL)
     placed, notes = in_meters(path, things)
     if cut:
-        notes.append(f"left out: {cut} outline{'s' * (cut != 1)} of which the file has only a part")
+        notes.append(f"left out: {plural(cut, 'outline')} of which the file has only a part")
     solid = [replace(t, region=_solid(t.region, width)) for t, width in zip(placed, widths, strict=True)]
     return Outlines(solid, notes=notes)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from irsim.bridges.maps.grid import Grid
-from irsim.bridges.maps.regions import masked_regions
+from irsim.bridges.maps.regions import keep_part
 from irsim.bridges.maps.ros_server import MapFileError
-from irsim.bridges.maps.source import OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy, known_free
+from irsim.bridges.maps.source import UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy, known_free
 from irsim.components.maps._rosmap import find_picture, read_meta, ros_raster
 from irsim.components.maps._site import MapProblem, MapSite
 from irsim.scenario.locate import why_outside
@@ -44,21 +44,8 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     values = raster.values()
     grid = Grid(*raster.origin, raster.width / values.shape[0], *values.shape)
     result = Occupancy(values, grid, "ros", notes=notes, parts=[picture])
-    free = known_free(values)
-    if not free.any():
-        return result
-    number, sizes = masked_regions(free)
-    result.regions = [float(size) * grid.resolution**2 for size in sizes]
-    if options.seed_point is not None:
-        column = grid.column_at(*options.seed_point)
-        kept = -1 if column is None else int(number.reshape(-1)[column])
-        if kept < 0:
-            x, y = options.seed_point
-            what = f"the seed point ({x:g}, {y:g}) is not free in this map"
-            raise MapFileError("bridge-file", what, "give a free place, or no seed point")
-        result.kept = kept
-        result.values = values.copy()
-        result.values[free & (number != kept)] = OCCUPIED
+    if known_free(values).any():
+        keep_part(result, options.seed_point)
     return result
 
 

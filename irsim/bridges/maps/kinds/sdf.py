@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import xml.etree.ElementTree as ET
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +19,8 @@ from irsim.bridges.maps import slices
 from irsim.bridges.maps.kinds import mesh
 from irsim.bridges.maps.kinds._named_meshes import read_named_mesh
 from irsim.bridges.maps.kinds._sdf_places import Frames, find_file, model_of, pose_of
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, unusable
-from irsim.bridges.maps.xml_files import find_number, find_numbers, read_xml
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlines, unusable
+from irsim.bridges.maps.xml_files import UPRIGHT, Collection, find_number, find_numbers, read_xml
 from irsim.common.arrays import Floats
 from irsim.common.text import clean
 
@@ -29,36 +29,15 @@ __all__ = ["KIND"]
 _MAX_MODELS = 20_000
 _MAX_INCLUDES = 32
 """Files that include one another."""
-_LISTED = 5
-_UPRIGHT = 1e-6
 _HARMLESS = ("sun", "ground_plane")
 """Models of nearly every world in which nothing stands."""
 
 
-@dataclass
-class _World:
-    """The parts of a world that an import collects.
+@dataclass(kw_only=True)
+class _World(Collection):
+    """A world, and what is collected of it; ``models`` counts those that it includes."""
 
-    Attributes:
-        path: The file.
-        options, limits: Options and limits of the import.
-        things: Outlines of the obstacles.
-        parts: Files that were read.
-        left: Reason -> names of what was left out for it.
-        models: Number of models.
-    """
-
-    path: Path
-    options: ImportOptions
-    limits: ImportLimits
-    things: list[Outlined] = field(default_factory=list)
-    parts: list[Path] = field(default_factory=list)
-    left: dict[str, list[str]] = field(default_factory=dict)
     models: int = 0
-
-    def leave(self, why: str, name: str) -> None:
-        """Note that something is left out."""
-        self.left.setdefault(why, []).append(clean(name, 80))
 
 
 def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
@@ -67,7 +46,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
     Raises:
         BridgeError: The file is damaged, includes itself or an address, or nothing stands in it.
     """
-    world = _World(path, options, limits)
+    world = _World(path=path, options=options, limits=limits)
     root = read_xml(path, limits)
     worlds = [root] if root.tag == "world" else root.findall("world")
     scope = worlds[0] if worlds else root
@@ -85,12 +64,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Outlines:
         world.leave("actors move", actor.get("name", "?"))
     for element in scope.iterfind("population"):
         world.leave("populations are placed by Gazebo", element.get("name", "?"))
-    notes = []
-    for why, names in world.left.items():
-        listed = ", ".join(sorted(set(names))[:_LISTED]) + (", …" if len(set(names)) > _LISTED else "")
-        notes.append(f"left out: {len(names)} element{'s' * (len(names) != 1)} ({listed}): {why}")
-    height = options.height or 0.0
-    return Outlines(world.things, height=height, notes=notes, parts=world.parts)
+    return world.outlines()
 
 
 def _include(world: _World, scope: ET.Element, path: Path, open_files: tuple[Path, ...]) -> None:
@@ -183,8 +157,6 @@ def _in_link(file: Path, frames: Frames, link: ET.Element, shape: ET.Element) ->
 
 def _shape(world: _World, file: Path, shape: ET.Element, place: Floats, name: str) -> None:
     """Collect the outline of a collision or a visual."""
-    low = (world.options.height or 0.0) + world.options.climb
-    high = (world.options.height or 0.0) + world.options.headroom
     for geometry in shape.iterfind("geometry/*"):
         kind = geometry.tag
         if kind == "plane":
@@ -193,20 +165,17 @@ def _shape(world: _World, file: Path, shape: ET.Element, place: Floats, name: st
             continue
         if kind in ("mesh", "polyline"):
             read_one = _mesh if kind == "mesh" else _polyline
-            region = read_one(world, file, geometry, place, (low, high), name)
+            region = read_one(world, file, geometry, place, name)
         elif kind in _CONVEX:
             region = slices.slice_of_hull(
-                slices.moved(place, _CONVEX[kind](file, geometry)), low, high, rings=kind != "box"
+                slices.moved(place, _CONVEX[kind](file, geometry)), *world.band, rings=kind != "box"
             )
         else:
             if kind != "empty":
                 world.leave(f"shapes of the kind {clean(kind, 30)} are not read", name)
             continue
-        if region is not None:
-            circle = None
-            if kind == "cylinder" and abs(place[2, 2]) > 1 - _UPRIGHT:
-                circle = (float(place[0, 3]), float(place[1, 3]), find_number(file, geometry, "radius"))
-            world.things.append(Outlined(name, region, circle))
+        radius = find_number(file, geometry, "radius") if kind == "cylinder" else None
+        world.add(name, region, place, radius)
 
 
 def _turned(place: Floats, direction: list[float]) -> Floats:
@@ -233,24 +202,23 @@ _CONVEX: dict[str, Any] = {
 """Corners of the shapes that are convex."""
 
 
-def _polyline(
-    world: _World, file: Path, geometry: ET.Element, place: Floats, band: tuple[float, float], name: str
-) -> Any:
+def _polyline(world: _World, file: Path, geometry: ET.Element, place: Floats, name: str) -> Any:
     """The outline of an upright prism; an outline within another one is a hole."""
+    low, high = world.band
     height = find_number(file, geometry, "height", 1.0)
     points = [find_numbers(file, point, 2) for point in geometry.iterfind("point")]
-    if abs(place[2, 2]) < 1 - _UPRIGHT:
+    if abs(place[2, 2]) < 1 - UPRIGHT:
         solid = np.array([[x, y, z] for x, y in points for z in (0.0, height)])
         world.leave("tilted, so that its hull was taken", name)
-        return slices.slice_of_hull(slices.moved(place, solid), *band)
+        return slices.slice_of_hull(slices.moved(place, solid), low, high)
     ends = sorted((float(place[2, 3]), float(place[2, 3] + place[2, 2] * height)))
-    if len(points) < 3 or ends[1] <= band[0] or ends[0] >= band[1]:
+    if len(points) < 3 or ends[1] <= low or ends[0] >= high:
         return None
     flat = np.column_stack([np.array(points), np.zeros(len(points))])
     return shapely.make_valid(shapely.Polygon(slices.moved(place, flat)[:, :2]))
 
 
-def _mesh(world: _World, file: Path, geometry: ET.Element, place: Floats, band: tuple[float, float], name: str) -> Any:
+def _mesh(world: _World, file: Path, geometry: ET.Element, place: Floats, name: str) -> Any:
     """The outline of a mesh in a file, which is named if it cannot be read."""
     uri = (geometry.findtext("uri") or "").strip()
     located = find_file(uri, file, world.options.root, world.limits)
@@ -266,7 +234,7 @@ def _mesh(world: _World, file: Path, geometry: ET.Element, place: Floats, band: 
     world.parts.append(located)
     scale = np.array(find_numbers(file, geometry.find("scale"), 3, (1, 1, 1)))
     points = np.asarray(triangles, dtype=np.float64).reshape(-1, 3) * scale
-    return slices.slice_of_mesh(slices.moved(place, points).reshape(-1, 3, 3), *band)
+    return slices.slice_of_mesh(slices.moved(place, points).reshape(-1, 3, 3), *world.band)
 
 
 KIND = Kind(
