@@ -308,7 +308,7 @@ def nightly(session: nox.Session) -> None:
     timed(session, "another tenth of avoidance", "pytest", *options, env={"IRSIM_NIGHTLY": "1"})
     rotating = ("-m", "rotates", "-n", "2", "--dist", "loadgroup", "--durations", "15")
     timed(session, "tests that rotate", "pytest", *rotating, env={"IRSIM_TESTS": "thorough"})
-    damaged = ("-m", "slow", "-n", "2", "tests/damaged", "--durations", "5")
+    damaged = ("-m", "slow", "-n", "2", "tests/fuzz/damaged", "--durations", "5")
     timed(session, "10,000 damages of each kind of file", "pytest", *damaged, env={"IRSIM_NIGHTLY": "1"})
     raced = ("-m", "slow", "-n", "2", "tests/mcp/test_links.py")
     timed(session, "2,000 races with links", "pytest", *raced, env={"IRSIM_NIGHTLY": "1"})

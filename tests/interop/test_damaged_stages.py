@@ -13,9 +13,9 @@ import pytest
 from irsim.bridges.export.export import export_run
 from tests.bridges.maps.round_trips import SHAPES
 from tests.bridges.scenes import recorded
-from tests.damaged.kind import read_map_of
-from tests.damaged.test_damaged import read
-from tests.damaged.ways import damaged
+from tests.fuzz.damaged.kind import read_map_of
+from tests.fuzz.damaged.test_damaged import read
+from tests.fuzz.damaged.ways import damaged
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("usd")]
 pytest.importorskip("pxr")

@@ -200,3 +200,14 @@ with tempfile.TemporaryDirectory() as folder:
     path.write_text("robot: {kinematics: {name: diff}, goal: [4, 4]}\\n")
     assert isinstance(irsim.batch(path, 2), Batch)"""
     )
+
+
+def test_tests_import_only_helpers_that_are_there() -> None:
+    """A moved folder of tests takes along those who import from it."""
+    missing = [
+        f"{path.relative_to(ROOT)}: {name}"
+        for path in (ROOT / "tests").rglob("*.py")
+        for name in re.findall(r"^\s*(?:from|import) (tests(?:\.\w+)+)", path.read_text(encoding="utf-8"), re.MULTILINE)
+        if not any((ROOT / name.replace(".", "/")).with_suffix(end).exists() for end in ("", ".py"))
+    ]
+    assert missing == []

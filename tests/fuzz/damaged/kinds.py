@@ -49,9 +49,9 @@ from tests.bridges import crowds
 from tests.bridges.maps import scenes
 from tests.bridges.maps.test_roads import road
 from tests.bridges.splats import scenes as splat_scenes
-from tests.damaged.kind import IMPORT, Kind, made, read_map_of, text
-from tests.damaged.places import PLACES
-from tests.damaged.verdicts import VERDICTS
+from tests.fuzz.damaged.kind import IMPORT, Kind, made, read_map_of, text
+from tests.fuzz.damaged.places import PLACES
+from tests.fuzz.damaged.verdicts import VERDICTS
 from tests.learning.tasks import corridor
 from tests.policies.converters import torch_bytes
 from tests.policies.networks.examples import go_to_goal

@@ -14,7 +14,7 @@ from tests.bridges.maps.test_commonroad import BOX, obstacle, points
 from tests.bridges.maps.test_footprints import Extract, box, feature
 from tests.bridges.maps.test_gazebo_worlds import box as sdf_box
 from tests.bridges.maps.test_gazebo_worlds import link, model, shape
-from tests.damaged.kind import IMPORT, Kind, made, read_map_of, text
+from tests.fuzz.damaged.kind import IMPORT, Kind, made, read_map_of, text
 
 __all__ = ["PLACES"]
 

@@ -24,8 +24,8 @@ from irsim_evals.report.load import load_proof, load_results, merge
 from irsim_evals.report.markdown import markdown
 from irsim_evals.report.page import page
 from irsim_evals.results import Results, cases_hash
-from tests.damaged.kind import Kind, made, text
 from tests.evals.conftest import file_of, trial
+from tests.fuzz.damaged.kind import Kind, made, text
 
 __all__ = ["VERDICTS"]
 

@@ -1,7 +1,7 @@
 """Each kind of file, damaged in many ways: it is read, or it is an error with a code, soon and within little memory.
 
 The quick tests try 20 ways each, the gate 500 and ``nox -s nightly`` 10,000. A way is a number, so that a failure names
-it: ``python -m pytest tests/damaged -k KIND`` tries it again.
+it: ``python -m pytest tests/fuzz/damaged -k KIND`` tries it again.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ import pytest
 
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.diagnostics.errors import CodedError, ScenarioError, ScenarioNotFoundError
-from tests.damaged.kinds import KINDS
-from tests.damaged.ways import damaged
+from tests.fuzz.damaged.kinds import KINDS
+from tests.fuzz.damaged.ways import damaged
 
 pytestmark = pytest.mark.one_python
 GATE, NIGHT = 500, 10_000
