@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from irsim.common.log import Logger
 from irsim.components.maps._grid import merged
-from irsim.components.maps._site import OCCUPIED
+from irsim.components.maps._site import HALF
 from irsim.objects.base import column
 from irsim.objects.describe import grid_values
 from irsim.objects.lifecycle import amend_world
@@ -310,7 +310,7 @@ class WorldView(_Clock):
         if values is None:
             return None, None, None
         values = merged(values, mdownsample)
-        index = np.array(np.nonzero(values > OCCUPIED), dtype=np.int64)
+        index = np.array(np.nonzero(values > HALF), dtype=np.int64)
         cell = np.array([[self.width / values.shape[0]], [self.height / values.shape[1]]])
         return values, index, np.array(self.offset)[:2, None] + (index + 0.5) * cell
 
@@ -359,7 +359,7 @@ class WorldView(_Clock):
     def obstacle_index(self) -> NDArray[np.int64] | None:
         """Indices i, j of the occupied cells, (2, M); None without a map."""
         values = self.grid_map
-        return None if values is None else np.array(np.nonzero(values > OCCUPIED), dtype=np.int64)
+        return None if values is None else np.array(np.nonzero(values > HALF), dtype=np.int64)
 
     @property
     def obstacle_positions(self) -> NDArray[np.float64] | None:

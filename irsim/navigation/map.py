@@ -12,12 +12,12 @@ import numpy as np
 
 import irsim._core as core
 from irsim.components.maps._grid import with_unknown
-from irsim.components.maps._site import OCCUPIED
+from irsim.components.maps._site import HALF
 from irsim.objects.shapely_geometry import body_parts, parts_of
 from irsim.objects.view import ObjectView
 from irsim.simulation.occupancy import grid_occupied
 
-__all__ = ["OCCUPIED", "EnvGridMap", "Map", "coarsen", "terrain_of", "world_map"]
+__all__ = ["EnvGridMap", "Map", "coarsen", "terrain_of", "world_map"]
 
 MAX_EQUAL_RATIO = 1.05
 """A resolution up to this many times the cell size of the grid of the world counts as equal to it."""
@@ -41,7 +41,7 @@ class EnvGridMap(Protocol):
         """Size of a cell of the grid along x and y [m], or None."""
 
     def grid_occupied(
-        self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = OCCUPIED
+        self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = HALF
     ) -> bool | None:
         """Whether a cell near (x, y) is occupied; None without a grid."""
 
@@ -107,7 +107,7 @@ class Map:
         return None if self.grid is None else (self.width / self.grid.shape[0], self.height / self.grid.shape[1])
 
     def grid_occupied(
-        self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = OCCUPIED
+        self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = HALF
     ) -> bool | None:
         """Whether any cell is occupied in the box from (x - margin_x, y - margin_y) to (x + margin_x, y + margin_y).
 
@@ -225,7 +225,7 @@ def _grid_parts(env_map: Any) -> list[Any]:
     if kept is not None and (kept[1].origin, kept[1].cell) == (origin, cell) and np.array_equal(kept[0], env_map.grid):
         return [core.GridCells(grid=kept[1])] if kept[1].closed_count else []
     values = np.asarray(env_map.grid)
-    occupied, unknown = (np.ascontiguousarray(chosen, dtype=np.uint8) for chosen in (values > OCCUPIED, values < 0))
+    occupied, unknown = (np.ascontiguousarray(chosen, dtype=np.uint8) for chosen in (values > HALF, values < 0))
     cells = core.OccupancyGrid(occupied, origin, cell, unknown)
     return [core.GridCells(grid=cells)] if cells.closed_count else []
 

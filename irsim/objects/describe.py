@@ -11,7 +11,7 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.common.installed import version
 from irsim.common.outline import BodyPart, Cells, Polygon, outline
-from irsim.components.maps._site import OCCUPIED, UNKNOWN
+from irsim.components.maps._site import HALF, UNKNOWN
 from irsim.objects.views import views
 from irsim.options.colors import rgb
 from irsim.scenario.resolve.resolved import ObjectRecord
@@ -149,7 +149,7 @@ def _grid(simulation: Simulation) -> Grid | None:
     if values is None or grid is None:
         return None
     cell, origin = (float(grid.cell[0]), float(grid.cell[1])), (float(grid.origin[0]), float(grid.origin[1]))
-    return Grid(values > OCCUPIED, cell, origin, np.clip(values, UNKNOWN, 100).astype(np.int8))
+    return Grid(values > HALF, cell, origin, np.clip(values, UNKNOWN, 100).astype(np.int8))
 
 
 def _color(record: ObjectRecord) -> tuple[float, float, float]:

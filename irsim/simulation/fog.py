@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.components.maps._site import OCCUPIED
+from irsim.components.maps._site import HALF
 from irsim.simulation.occupancy import grid_collision_geometry, grid_occupied
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ class FogMap:
         self.cells[seen] = 1
 
     def grid_occupied(
-        self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = OCCUPIED
+        self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = HALF
     ) -> bool | None:
         """Whether a cell of ``grid`` is occupied near (x, y); see :meth:`irsim.navigation.map.Map.grid_occupied`."""
         if self.grid is None:

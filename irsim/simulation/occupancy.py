@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from irsim.components.maps._site import OCCUPIED
+from irsim.components.maps._site import HALF
 
 __all__ = ["grid_collision_geometry", "grid_occupied"]
 
@@ -19,7 +19,7 @@ def grid_occupied(
     y: float,
     margin_x: float = 0.0,
     margin_y: float = 0.0,
-    threshold: float = OCCUPIED,
+    threshold: float = HALF,
 ) -> bool:
     """Whether any cell is occupied in the box from (x - margin_x, y - margin_y) to (x + margin_x, y + margin_y).
 
@@ -62,7 +62,7 @@ def grid_collision_geometry(
         return False
     x, y = (float(v) for v in world_offset[:2])
     dx, dy = (float(v) for v in np.asarray(grid_reso).reshape(-1)[:2])
-    occupied = np.asarray(grid) > OCCUPIED
+    occupied = np.asarray(grid) > HALF
     nx, ny = occupied.shape
     low_x, low_y, high_x, high_y = geometry.bounds
     # one more cell on each side, because rounding could miss a cell that is only touched; shapely decides exactly

@@ -10,7 +10,8 @@ import pytest
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map
 from irsim.bridges.maps.importing import read_occupancy
-from irsim.bridges.maps.source import FREE, ImportLimits, ImportOptions
+from irsim.bridges.maps.source import ImportLimits, ImportOptions
+from irsim.components.maps._site import FREE
 
 pytestmark = [pytest.mark.interop, pytest.mark.foreign, pytest.mark.xdist_group("usd")]
 pxr = pytest.importorskip("pxr")

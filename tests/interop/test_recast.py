@@ -12,7 +12,8 @@ import pytest
 from irsim.bridges.maps.grid import Grid
 from irsim.bridges.maps.importing import import_map, read_occupancy
 from irsim.bridges.maps.occupancy import eroded
-from irsim.bridges.maps.source import FREE, ImportLimits, ImportOptions, Occupancy
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Occupancy
+from irsim.components.maps._site import FREE
 from tests.bridges.maps.scenes import flat, house, write_glb, y_up
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("recast")]

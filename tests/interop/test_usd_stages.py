@@ -14,7 +14,8 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import turn_of
 from irsim.bridges.maps import import_map, read_sidecar
 from irsim.bridges.maps.importing import read_occupancy
-from irsim.bridges.maps.source import FREE, ImportLimits, ImportOptions
+from irsim.bridges.maps.source import ImportLimits, ImportOptions
+from irsim.components.maps._site import FREE
 from irsim.scenario.read import read
 from tests.bridges.maps.scenes import box, flat, house, y_up
 

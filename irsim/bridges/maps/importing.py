@@ -15,7 +15,6 @@ from irsim.bridges.maps.occupancy import eroded, occupancy_of
 from irsim.bridges.maps.shapes import occupancy_of_outlines
 from irsim.bridges.maps.sidecar import MapSidecar, scene_transform
 from irsim.bridges.maps.source import (
-    HALF,
     ImportLimits,
     ImportOptions,
     Kind,
@@ -31,7 +30,7 @@ from irsim.common.arrays import Floats
 from irsim.common.extras import require
 from irsim.common.files import TargetError, check_suffix
 from irsim.common.text import clean
-from irsim.components.maps._site import UNKNOWN_AS
+from irsim.components.maps._site import HALF, UNKNOWN_AS
 from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.errors import ArgumentError
 from irsim.results.records import MapImportResult, MapLevel, MapTrip

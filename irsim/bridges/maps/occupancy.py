@@ -11,9 +11,10 @@ import numpy as np
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import SIDES, Bools, Grid, Ints, Triangles, clipped, fitting_side, grid_over, side_notes
 from irsim.bridges.maps.regions import Level, find_levels
-from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Occupancy, Scene
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Occupancy, Scene
 from irsim.bridges.maps.voxels import Spans, Surfaces, few_pieces, floors_of, spans_of, walkable_of
 from irsim.common.arrays import Floats
+from irsim.components.maps._site import FREE, OCCUPIED, UNKNOWN
 
 __all__ = ["cropped", "eroded", "occupancy_of", "within"]
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import Bools, Grid, Ints
-from irsim.bridges.maps.source import OCCUPIED, Occupancy, known_free
+from irsim.bridges.maps.source import Occupancy, known_free
 from irsim.bridges.maps.voxels import Surfaces
+from irsim.components.maps._site import OCCUPIED
 
 __all__ = ["Level", "connected", "find_levels", "keep_part", "masked_regions", "numbered"]
 

@@ -13,7 +13,7 @@ from irsim.bridges.maps.writing import picture_bytes, write_all_or_none
 from irsim.common.arrays import Floats
 from irsim.common.files import check_suffix
 from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of
-from irsim.components.maps._site import OCCUPIED
+from irsim.components.maps._site import HALF
 from irsim.objects.describe import grid_values
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.random_streams import fresh_seed
@@ -95,7 +95,7 @@ def export_map(
     content = picture_bytes(pixels_of(values, meta), "PNG" if picture.suffix == ".png" else "PPM")
     write_all_or_none([(target, meta.as_yaml().encode()), (picture, content)], overwrite=overwrite)
     nx, ny = values.shape
-    occupied = int((values > OCCUPIED).sum())
+    occupied = int((values > HALF).sum())
     return MapFiles([str(target), str(picture)], nx, ny, side, scenario.grid.origin, occupied)
 
 

@@ -10,16 +10,8 @@ import shapely
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import SIDES, Bools, Grid, fits_into, fitting_side, grid_over, rows_of, side_notes
 from irsim.bridges.maps.regions import keep_part
-from irsim.bridges.maps.source import (
-    FREE,
-    OCCUPIED,
-    UNKNOWN,
-    ImportLimits,
-    ImportOptions,
-    Occupancy,
-    Outlined,
-    Outlines,
-)
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Occupancy, Outlined, Outlines
+from irsim.components.maps._site import FREE, OCCUPIED, UNKNOWN
 
 __all__ = ["occupancy_of_outlines", "outlines_within"]
 

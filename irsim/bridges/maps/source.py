@@ -18,15 +18,12 @@ from irsim.bridges.maps.grid import Bools, Grid, Triangles
 from irsim.common.arrays import Floats
 from irsim.common.lazy import module_names
 from irsim.common.text import clean
+from irsim.components.maps._site import HALF
 from irsim.options.base import Options
 from irsim.options.units import Degrees, Fraction, Meters
 
 __all__ = [
-    "FREE",
-    "HALF",
     "NOT_FLAT",
-    "OCCUPIED",
-    "UNKNOWN",
     "ImportLimits",
     "ImportOptions",
     "Kind",
@@ -108,10 +105,6 @@ class ImportLimits:
     seconds: float = 300.0
 
 
-FREE, OCCUPIED, UNKNOWN = 0.0, 100.0, -1.0
-"""Values of cells, as in occupancy grids of ROS; those between free and occupied are probabilities."""
-HALF = 50.0
-"""Occupancy up to which a cell counts as free."""
 _HEAD = 4096
 """Bytes of a file by which its kind is known."""
 _LICENCE = 64 * 1024

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import irsim._core as core
-from irsim.components.maps._site import OCCUPIED, UNKNOWN, UNKNOWN_AS, Noise, Raster
+from irsim.components.maps._site import HALF, UNKNOWN, UNKNOWN_AS, Noise, Raster
 
 if TYPE_CHECKING:
     import numpy as np
@@ -172,7 +172,7 @@ def with_unknown(most: Floats, least: Floats) -> Floats:
     """
     import numpy as np
 
-    return np.where((most <= OCCUPIED) & (least < 0), UNKNOWN, most) if (least < 0).any() else most
+    return np.where((most <= HALF) & (least < 0), UNKNOWN, most) if (least < 0).any() else most
 
 
 def shades(values: Any) -> NDArray[np.uint8]:

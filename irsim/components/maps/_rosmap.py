@@ -20,7 +20,7 @@ from irsim.common.text import clean
 from irsim.common.yaml.plain import SMALL, read_plain_yaml
 from irsim.components.maps._grid import with_unknown
 from irsim.components.maps._picture import open_picture, upright
-from irsim.components.maps._site import OCCUPIED, UNKNOWN, MapProblem, MapSite, Raster, cells_along
+from irsim.components.maps._site import FREE, HALF, OCCUPIED, UNKNOWN, MapProblem, MapSite, Raster, cells_along
 
 __all__ = ["RosMeta", "find_picture", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
 
@@ -138,13 +138,13 @@ def occupancy_of(pixels: NDArray[Any], meta: RosMeta) -> Floats:
     between: Any = UNKNOWN
     if meta.mode == "scale":
         between = np.round(99 * (part - meta.free_thresh) / max(meta.occupied_thresh - meta.free_thresh, 1e-12))
-    out = np.where(part > meta.occupied_thresh, 100.0, np.where(part < meta.free_thresh, 0.0, between))
+    out = np.where(part > meta.occupied_thresh, OCCUPIED, np.where(part < meta.free_thresh, FREE, between))
     if meta.mode == "scale" and alpha is not None:
         out = np.where(alpha < 1.0, UNKNOWN, out)
     return out
 
 
-def pixels_of(values: Floats, meta: RosMeta) -> NDArray[np.uint8]:
+def pixels_of(values: NDArray[Any], meta: RosMeta) -> NDArray[np.uint8]:
     """Pixels from which :func:`occupancy_of` reads these occupancies back.
 
     Args:
@@ -160,7 +160,7 @@ def pixels_of(values: Floats, meta: RosMeta) -> NDArray[np.uint8]:
     if meta.mode == "trinary":
         unknown = round(255 * (1 - (meta.occupied_thresh + meta.free_thresh) / 2))
         unknown = _UNKNOWN_PIXEL if meta.free_thresh < 1 - _UNKNOWN_PIXEL / 255 < meta.occupied_thresh else unknown
-        grey = np.where(rows < 0, unknown, np.where(rows > OCCUPIED, 0, _FREE_PIXEL))
+        grey = np.where(rows < 0, unknown, np.where(rows > HALF, 0, _FREE_PIXEL))
     else:
         part = meta.free_thresh + np.clip(rows, 0, 100) / 99 * (meta.occupied_thresh - meta.free_thresh)
         part = np.where(rows <= 0, 0.0, np.where(rows > 99, 1.0, part))

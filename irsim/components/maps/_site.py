@@ -13,6 +13,8 @@ from irsim.diagnostics.diagnostic import nearest
 from irsim.diagnostics.errors import PickledWhole
 
 __all__ = [
+    "FREE",
+    "HALF",
     "OCCUPIED",
     "UNKNOWN",
     "UNKNOWN_AS",
@@ -32,10 +34,13 @@ if TYPE_CHECKING:
 
     from irsim.common.arrays import Floats
 
-OCCUPIED = 50
-"""Map cells with a larger occupancy, of 100, are occupied."""
-UNKNOWN = -1.0
-"""Occupancy of unknown cells, as in maps of ROS: beams and bodies pass them, planners and random places avoid them."""
+FREE, OCCUPIED, UNKNOWN = 0.0, 100.0, -1.0
+"""Occupancies of cells, as in maps of ROS; those between free and occupied are probabilities.
+
+Beams and bodies pass unknown cells, planners and random places avoid them.
+"""
+HALF = 50
+"""Occupancy up to which a cell counts as free; cells with a larger one count as occupied."""
 UNKNOWN_AS = {"free": 20.0, "occupied": 75.0, "unknown": UNKNOWN}
 """Occupancies of cells whose occupancy the map does not give, by what they count as; pictures show them as grey."""
 _SLIP = 0.85
@@ -98,10 +103,10 @@ class Raster:
         return np.asarray(self.levels if self.table is None else np.take(self.table, self.levels), dtype=np.float64)
 
     def occupied(self) -> NDArray[np.uint8]:
-        """(nx, ny) 1 where the occupancy is above 50."""
+        """(nx, ny) 1 where the occupancy is above half."""
         import numpy as np
 
-        full = self.levels > OCCUPIED if self.table is None else (self.table > OCCUPIED)[self.levels]
+        full = self.levels > HALF if self.table is None else (self.table > HALF)[self.levels]
         return np.ascontiguousarray(full, dtype=np.uint8)
 
     def unknown(self) -> NDArray[np.uint8] | None:

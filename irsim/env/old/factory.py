@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from irsim.compat.objects.view import ScriptObject, views
-from irsim.components.maps._site import OCCUPIED
+from irsim.components.maps._site import HALF
 from irsim.env import queries
 from irsim.env.old.construct import ObjectBase, ObjectGroup
 from irsim.objects.lifecycle import lone_simulation, renumber
@@ -116,7 +116,7 @@ class ObjectFactory:
         extent = self._extent() or {"width": 10.0, "height": 10.0, "offset": [0.0, 0.0]}
         corner = np.asarray(extent["offset"] if world_offset is None else world_offset, dtype=np.float64)[:2]
         grid = None if grid_map is None else np.asarray(grid_map, dtype=np.float64)
-        if grid is None or not (grid > OCCUPIED).any():
+        if grid is None or not (grid > HALF).any():
             wide = extent["width"] / cell[0], extent["height"] / cell[1]
             size = grid.shape if grid is not None else (max(1, round(wide[0])), max(1, round(wide[1])))
             grid = np.zeros(size)

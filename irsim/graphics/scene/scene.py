@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
-from irsim.components.maps._site import OCCUPIED
+from irsim.components.maps._site import HALF
 from irsim.diagnostics.errors import ArgumentError
 from irsim.graphics.scene.style import Color
 
@@ -291,7 +291,7 @@ def _plain(value: Any) -> Any:
 
 def _plain_grid(grid: GridImage) -> dict[str, Any]:
     """Encode occupied cells as run lengths: row by row from the lowest, alternately free and occupied, free first."""
-    full = (grid.levels.T > OCCUPIED).ravel()
+    full = (grid.levels.T > HALF).ravel()
     ends = np.flatnonzero(np.diff(full.astype(np.int8), prepend=0))
     runs = np.diff(np.concatenate([[0], ends, [full.size]])).tolist()
     extent = [float(value) for value in grid.extent]

@@ -7,9 +7,9 @@ from pathlib import Path
 from irsim.bridges.maps.grid import Grid
 from irsim.bridges.maps.regions import keep_part
 from irsim.bridges.maps.ros_server import MapFileError
-from irsim.bridges.maps.source import UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy, known_free
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Occupancy, known_free
 from irsim.components.maps._rosmap import find_picture, read_meta, ros_raster
-from irsim.components.maps._site import MapProblem, MapSite
+from irsim.components.maps._site import UNKNOWN, MapProblem, MapSite
 from irsim.scenario.locate import why_outside
 
 __all__ = ["KIND"]

@@ -14,13 +14,14 @@ from irsim.bridges.maps.grid import Grid, side_notes
 from irsim.bridges.maps.occupancy import cropped
 from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.sidecar import scene_transform
-from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy, unusable
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Occupancy, unusable
 from irsim.bridges.splats.occupancy import Plan, PlanOptions, find_floor, ground_plan, level_shares
 from irsim.bridges.splats.reading import read_header, read_splats
 from irsim.bridges.splats.splats import Splats, moved
 from irsim.bridges.splats.upright import upward_of
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
+from irsim.components.maps._site import FREE, OCCUPIED, UNKNOWN
 
 __all__ = ["KIND", "unpacked_splats"]
 

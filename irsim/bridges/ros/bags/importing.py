@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import math
 from collections.abc import Sequence
@@ -11,16 +10,16 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import fitting_side, side_notes
-from irsim.bridges.maps.writing import write_all_or_none
+from irsim.bridges.maps.writing import picture_bytes, write_all_or_none
 from irsim.bridges.ros.bags.reading import Recorded, read_bag
 from irsim.bridges.ros.incoming import Scan
 from irsim.bridges.ros.real import composed
 from irsim.common.arrays import Floats
-from irsim.components.maps._rosmap import RosMeta
+from irsim.components.maps._rosmap import RosMeta, pixels_of
+from irsim.components.maps._site import FREE, OCCUPIED, UNKNOWN
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.scenario.yaml.modeline import with_modeline
@@ -34,7 +33,6 @@ _NEAR_SHARE = 0.99
 """Share of hits that are nearer than where a beam without one is known to be free."""
 _SAME_RANGE = 1e-6
 """Relative difference from the greatest range within which a beam has hit nothing."""
-_OCCUPIED, _FREE, _UNKNOWN = 100, 0, -1
 
 
 @dataclass(frozen=True)
@@ -102,9 +100,9 @@ def map_of_scans(
         _count(hits, points[hit], low, resolution)
         for part in _through(pose[:2], points, resolution):
             _count(passes, part, low, resolution)
-    levels = np.full(counts, _UNKNOWN, dtype=np.int8)
-    levels[passes > 0] = _FREE
-    levels[(hits > 0) & (2 * hits >= passes)] = _OCCUPIED
+    levels = np.full(counts, UNKNOWN, dtype=np.int8)
+    levels[passes > 0] = FREE
+    levels[(hits > 0) & (2 * hits >= passes)] = OCCUPIED
     _clear(levels, path, low, resolution, radius)
     return BagMap(levels, resolution, (float(low[0]), float(low[1])))
 
@@ -167,15 +165,13 @@ def _clear(levels: NDArray[np.int8], path: Floats, low: Floats, resolution: floa
     for shift in around:
         cells = own + shift
         cells = cells[((cells >= 0) & (cells < levels.shape)).all(axis=1)]
-        levels[cells[:, 0], cells[:, 1]] = _FREE
+        levels[cells[:, 0], cells[:, 1]] = FREE
 
 
 _MAX_MAPPED = 3000
 """Scans of which the map is made; of more, some at equal distances."""
 _EVENTS_PER_ROW = 6
 """Events of YAML of one recorded pose."""
-_GREY = {100: 0, 0: 254, -1: 205}
-"""Grey values of a map of the ROS map server; 205 is unknown."""
 
 
 @dataclass(frozen=True)
@@ -271,7 +267,10 @@ def import_bag(
     picture = out.with_suffix(".png")
     if grid is not None:
         meta = RosMeta(picture.name, grid.resolution, (*grid.origin, 0.0))
-        contents += [(picture, _picture(grid)), (_described(out), meta.as_yaml().encode())]
+        contents += [
+            (picture, picture_bytes(pixels_of(grid.levels, meta), "PNG")),
+            (_described(out), meta.as_yaml().encode()),
+        ]
     write_all_or_none(contents, overwrite=overwrite)
     shown = str(picture) if grid is not None else None
     return ImportedBag(str(out), shown, len(times), len(scans), float(times[-1]), notes)
@@ -368,12 +367,3 @@ def _lidar(scan: Scan, mount: tuple[float, float, float]) -> str:
 def _described(out: Path) -> Path:
     """The file that describes the map: a picture alone cannot say what is unknown."""
     return out.with_suffix(".map.yaml")
-
-
-def _picture(grid: BagMap) -> bytes:
-    grey = np.zeros(grid.levels.shape, dtype=np.uint8)
-    for level, value in _GREY.items():
-        grey[grid.levels == level] = value
-    target = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(grey[:, ::-1].T)).save(target, format="PNG", optimize=True)
-    return target.getvalue()
