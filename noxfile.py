@@ -304,7 +304,7 @@ def nightly(session: nox.Session) -> None:
     peers = {"IRSIM_INTEROP": "required", "IRSIM_NIGHTLY": "1", "IRSIM_BPY": str(blender)}
     options = ("-m", "slow", "--durations", "5", "tests/interop/test_blender.py")
     timed(session, "tests with Blender", "pytest", *options, *session.posargs, env=peers)
-    options = ("-m", "slow", "-n", "2", "tests/avoidance/test_reference.py")
+    options = ("-m", "slow", "-n", "2", "tests/parity/avoidance/test_reference.py")
     timed(session, "another tenth of avoidance", "pytest", *options, env={"IRSIM_NIGHTLY": "1"})
     rotating = ("-m", "rotates", "-n", "2", "--dist", "loadgroup", "--durations", "15")
     timed(session, "tests that rotate", "pytest", *rotating, env={"IRSIM_TESTS": "thorough"})

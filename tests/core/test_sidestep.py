@@ -10,8 +10,8 @@ import pytest
 
 import irsim
 from irsim.api import read_scenario
-from tests.avoidance.judge import at_ends, within_steps
 from tests.core.worlds import assert_success, collisions
+from tests.parity.avoidance.judge import at_ends, within_steps
 
 LOCALS = {
     "orca": "name: orca, timeHorizon: 3",

@@ -56,7 +56,7 @@ def keys() -> tuple[str, ...]:
 @functools.cache
 def known_texts() -> tuple[str, ...]:
     """Existing scenarios: templates, bad ones, scenarios of the parity tests."""
-    patterns = ("templates/*/scenario.yaml", "tests/bad/*.yaml", "tests/parity/scenarios/*.yaml")
+    patterns = ("templates/*/scenario.yaml", "tests/scenario/bad/*.yaml", "tests/parity/scenarios/*.yaml")
     return tuple(file.read_text(encoding="utf-8") for pattern in patterns for file in sorted(ROOT.glob(pattern)))
 
 

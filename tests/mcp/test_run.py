@@ -14,8 +14,8 @@ from typer.testing import CliRunner
 
 from irsim.cli.app import app
 from irsim.results.run import RunResult
-from tests.api.test_between_steps import CONTACT, SWEPT
-from tests.api.test_between_steps import scene as tunnel
+from tests.episodes.test_between_steps import CONTACT, SWEPT
+from tests.episodes.test_between_steps import scene as tunnel
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, Caller, connected, data_of, error_of, text_of
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]

@@ -1,10 +1,10 @@
-"""The table of faults that tests must catch: ``python -m tests.faults`` makes them, which takes minutes."""
+"""The table of faults that tests must catch: ``python -m tests.packaging.faults`` makes them, which takes minutes."""
 
 from __future__ import annotations
 
 import ast
 
-from tests.faults import table
+from tests.packaging.faults import table
 
 
 def test_every_fault_can_still_be_made() -> None:

@@ -19,6 +19,10 @@ MAX_ARROWS = 64
 MAX_LINES = 400
 LOOSE = {"__init__.py", "__main__.py", "_core.pyi", "plugins.py", "py.typed"}
 """Files that may stand directly below ``irsim/``."""
+BESIDE_ROOMS = {"docs", "evals", "fuzz", "interop", "mcp", "packaging", "parity", "skills", "speed"}
+"""Folders of tests that are about more than one room, or about what stands beside the rooms."""
+HELPERS = {"peers", "warm"}
+"""Folders of ``tests/`` without any test."""
 MAY_IMPORT_COMPAT = {"irsim", "compat", "env", "lookup", "cli", "irsim_mcp"}
 
 
@@ -109,6 +113,14 @@ def test_the_rooms_are_those_of_the_guide() -> None:
     assert there == set(listed_rooms())
     loose = {path.name for path in (ROOT / "irsim").iterdir() if path.is_file() and path.suffix not in (".so", ".pyd")}
     assert loose == LOOSE
+
+
+def test_tests_mirror_the_rooms() -> None:
+    """Each room has a folder of tests; other folders are those of the sets above."""
+    folders = {path.name: {*path.rglob("test_*.py")} for path in (ROOT / "tests").iterdir() if any(path.rglob("*.py"))}
+    rooms = {name for name in listed_rooms() if (ROOT / "irsim" / name).is_dir()}
+    assert {name for name, tests in folders.items() if tests} == rooms | BESIDE_ROOMS
+    assert {name for name, tests in folders.items() if not tests} == HELPERS
 
 
 def test_a_room_imports_only_rooms_above_it() -> None:

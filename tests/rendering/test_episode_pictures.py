@@ -14,7 +14,7 @@ import irsim
 from irsim.api import snapshot
 from irsim.diagnostics.errors import PolicyError
 from irsim.policies.catalog import UnknownPolicyError
-from tests.api.test_between_steps import scene
+from tests.episodes.test_between_steps import scene
 
 PLACE = [7.4, 2.4, 8.7, 3.6]
 """Part of the world round the place where a robot passes through a board, in steps 20 to 30."""

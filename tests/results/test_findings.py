@@ -1,27 +1,13 @@
-"""Parts of every finding, from any reporter: its place, the word that was meant, an edit that is safe to make."""
+"""Parts of every finding, from any reporter: an edit that is safe to make, and what was given."""
 
 from __future__ import annotations
 
-import pytest
-
-from irsim.diagnostics.diagnostic import Diagnostic, Edit, format_path, nearest
+from irsim.diagnostics.diagnostic import Diagnostic, Edit
 from irsim.results.findings import Finding
 
 
 def finding(edit: Edit | None = None, given: object = None) -> Diagnostic:
     return Diagnostic("unknown-key", "error", ("robot", 0, "shape"), "there is no such key", given=given, edit=edit)
-
-
-@pytest.mark.parametrize(
-    ("word", "meant"), [("DIFF", "diff"), ("Dif", "diff"), ("omni_anglar", "omni_angular"), ("boat", None), (7, None)]
-)
-def test_the_word_that_was_meant_is_found_in_any_case(word: object, meant: str | None) -> None:
-    assert nearest(word, ["diff", "omni", "omni_angular", "acker"]) == meant
-
-
-def test_places_are_told_as_in_python() -> None:
-    assert format_path(("robot", 0, "shape", "vertices", 3, 1)) == "robot[0].shape.vertices[3][1]"
-    assert format_path(()) == "(document)"
 
 
 def test_only_edits_that_are_surely_meant_are_told() -> None:

@@ -1,9 +1,10 @@
 """Bad input gives findings, never an exception.
 
-Every file in ``tests/bad`` gives exactly the findings that its header announces, and the schema refuses it too: lines
-``# expect: <severity> <code> <path> <line>`` for each finding, and ``# schema accepts: <rule>`` where the schema cannot
-tell, with the entry of ``INEXPRESSIBLE`` that says why. Features that are only not simulated yet, and states left out,
-do not count, so that a file stays bad for its own reason. The example of each code gives that code.
+Every file in the folder ``bad`` beside this one gives exactly the findings that its header announces, and the schema
+refuses it too: lines ``# expect: <severity> <code> <path> <line>`` for each finding, and ``# schema accepts: <rule>``
+where the schema cannot tell, with the entry of ``INEXPRESSIBLE`` that says why. Features that are only not simulated
+yet, and states left out, do not count, so that a file stays bad for its own reason. The example of each code gives that
+code.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from irsim.scenario.read import Reading, read
 from irsim.validation.feasibility.check import feasibility_findings
 from tests.effort import examples
 
-FILES = sorted((Path(__file__).parent.parent / "bad").glob("*.yaml"))
+FILES = sorted(Path(__file__).with_name("bad").glob("*.yaml"))
 LATER = ("not-yet-simulated", "default-state")
 
 

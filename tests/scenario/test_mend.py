@@ -18,7 +18,7 @@ from irsim.scenario.yaml.edits import apply_edits
 from irsim.scenario.yaml.rewrite import rewrite, yaml_flow
 from tests.effort import examples
 
-BAD = sorted((Path(__file__).parents[1] / "bad").glob("*.yaml"))
+BAD = sorted(Path(__file__).with_name("bad").glob("*.yaml"))
 
 FLAWED = """\
 # my scene

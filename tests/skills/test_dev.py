@@ -65,7 +65,7 @@ def checkout(tmp_path: Path) -> tuple[Path, Run]:
 def test_a_shape_is_one_file_and_its_test(checkout: tuple[Path, Run]) -> None:
     folder, run = checkout
     put_into(folder, "new-shape")
-    registry = folder / "tests" / "conformance" / "test_registry.py"
+    registry = folder / "tests" / "testing" / "test_registry.py"
     line = re.search(r"`(\"stadium\": .*?,)`", read(EXAMPLES / "new-shape", "elements.md"))
     assert line
     text = registry.read_text(encoding="utf-8")

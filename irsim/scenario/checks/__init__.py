@@ -18,7 +18,7 @@ and warnings if the finding then disappears and no comment is lost; ``safe=False
 can choose, and ``Edit("remove", path)`` deletes a key. The path of a nested value extends the path of its entry.
 The code has a title, an explanation (``irsim/diagnostics/codes/``) and an example with its repair
 (``irsim/diagnostics/examples.py``). Tests have scenarios with and without the finding, and correct the headers of
-files in ``tests/bad``. A new family is a module with ``check(context)``, added to ``_FAMILIES``.
+files in ``tests/scenario/bad``. A new family is a module with ``check(context)``, added to ``_FAMILIES``.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ import pytest
 import irsim.runs.replay.data as packing
 from irsim.bundled.templates import names
 from irsim.runs import Run, RunError, open_run
-from tests.api.test_between_steps import scene as tunnel
+from tests.episodes.test_between_steps import scene as tunnel
 from tests.runs.replay.conftest import HOSTILE, recorded, scene
 from tests.runs.replay.reading import unpacked
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import irsim
-from tests.api.test_between_steps import scene as tunnel
 from tests.browser import Watched
+from tests.episodes.test_between_steps import scene as tunnel
 from tests.runs.replay.browser.test_player import SHARE, pixel_of, scrub, settled, value
 from tests.runs.replay.conftest import recorded
 

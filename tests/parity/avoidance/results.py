@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tests.avoidance.families import BEHAVIORS, CASES, groups
+from tests.parity.avoidance.families import BEHAVIORS, CASES, groups
 
 __all__ = ["COLUMNS", "FOLDER", "Key", "Outcomes", "Pool", "exact_losses", "pools", "read", "write"]
 

@@ -16,7 +16,7 @@ import shapely
 import yaml
 
 import irsim
-from tests.avoidance.families import (
+from tests.parity.avoidance.families import (
     BEHAVIORS,
     CASES,
     CELL_M,
@@ -29,9 +29,9 @@ from tests.avoidance.families import (
     layout,
     scenario,
 )
-from tests.avoidance.judge import Judge, Verdict, at_ends, at_rest, within_steps
-from tests.avoidance.results import FOLDER, read
-from tests.avoidance.worker import line, write_start
+from tests.parity.avoidance.judge import Judge, Verdict, at_ends, at_rest, within_steps
+from tests.parity.avoidance.results import FOLDER, read
+from tests.parity.avoidance.worker import line, write_start
 
 pytestmark = pytest.mark.one_python
 

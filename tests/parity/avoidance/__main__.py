@@ -1,4 +1,4 @@
-"""Compare how robots avoid each other and walls with ir-sim 2.12: ``python -m tests.avoidance``.
+"""Compare how robots avoid each other and walls with ir-sim 2.12: ``python -m tests.parity.avoidance``.
 
 Without options, the starts of `families.py` are run and compared with the kept reference of ir-sim 2.12. ``--write``
 keeps ours as a reference, too: do so after a change that is meant to change motion. ``--peer PYTHON`` runs those starts
@@ -15,8 +15,8 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from tests.avoidance.families import BEHAVIORS, PEER_BEHAVIORS, groups
-from tests.avoidance.results import FOLDER, Key, Outcomes, Pool, exact_losses, pools, read, write
+from tests.parity.avoidance.families import BEHAVIORS, PEER_BEHAVIORS, groups
+from tests.parity.avoidance.results import FOLDER, Key, Outcomes, Pool, exact_losses, pools, read, write
 
 WORKER = Path(__file__).with_name("worker.py")
 OURS, PEER = FOLDER / "ours.csv", FOLDER / "peer.csv"
@@ -90,7 +90,7 @@ def _list_losses(lost: list[tuple[Key, str]]) -> str:
 def main(arguments: list[str] | None = None) -> int:
     """Run what is missing and print the tables."""
     parser = argparse.ArgumentParser(
-        prog="python -m tests.avoidance", description="Compare avoidance with ir-sim 2.12."
+        prog="python -m tests.parity.avoidance", description="Compare avoidance with ir-sim 2.12."
     )
     parser.add_argument("--peer", help="interpreter with PyPI's ir-sim 2.12 and pyrvo: run what its reference lacks")
     parser.add_argument("--write", action="store_true", help="keep our results as the reference")

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from irsim import _core
-from tests.faults.table import ROOT, Fault, holder
+from tests.packaging.faults.table import ROOT, Fault, holder
 
 __all__ = ["Copy"]
 

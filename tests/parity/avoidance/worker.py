@@ -21,7 +21,7 @@ import yaml
 from numpy.typing import NDArray
 from PIL import Image
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 if __name__ == "__main__":
     # The interpreter's own irsim is imported first: the folder of this repository holds one, too.
     sys.path[0] = tempfile.gettempdir()
@@ -31,8 +31,8 @@ if __name__ == "__main__":
 else:
     import irsim
 
-from tests.avoidance.families import CELL_M, RADIUS_M, SIZE_M, THRESHOLD_M, Group, groups, layout, scenario  # noqa: E402
-from tests.avoidance.judge import Judge, Verdict, at_rest  # noqa: E402
+from tests.parity.avoidance.families import CELL_M, RADIUS_M, SIZE_M, THRESHOLD_M, Group, groups, layout, scenario  # noqa: E402
+from tests.parity.avoidance.judge import Judge, Verdict, at_rest  # noqa: E402
 
 COLUMNS = ("behavior", "drive", "step", "family", "case", "spelling", "outcomes", "between", "seconds", "depths_um")
 DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)

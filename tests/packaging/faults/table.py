@@ -10,7 +10,7 @@ import yaml
 
 __all__ = ["FOLDERS", "ROOT", "Fault", "faults", "holder", "node"]
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 FOLDERS = ("irsim", "mcp_server/irsim_mcp", "evals/irsim_evals")
 """The packages in which faults are made."""
 

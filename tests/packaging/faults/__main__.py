@@ -1,8 +1,9 @@
 """Make faults in a copy of the checkout, one at a time, and tell which of them their tests catch.
 
-``python -m tests.faults`` makes all of them, ``python -m tests.faults NAME …`` those named. First the tests must pass
-without any fault. With ``--tests quick`` all quick tests stand in for the tests of a fault. A fault is caught if a
-test fails; it is broken if pytest could not run the tests, and so tells nothing. Exit code 0: all are caught.
+``python -m tests.packaging.faults`` makes all of them, ``python -m tests.packaging.faults NAME …`` those named. First
+the tests must pass without any fault. With ``--tests quick`` all quick tests stand in for the tests of a fault. A fault
+is caught if a test fails; it is broken if pytest could not run the tests, and so tells nothing. Exit code 0: all are
+caught.
 """
 
 from __future__ import annotations
@@ -13,14 +14,14 @@ import tempfile
 import time
 from pathlib import Path
 
-from tests.faults.copies import Copy
-from tests.faults.table import Fault, faults, holder, node
+from tests.packaging.faults.copies import Copy
+from tests.packaging.faults.table import Fault, faults, holder, node
 
 WORDS = {0: "missed", 1: "caught", None: "too slow"}
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="python -m tests.faults", description=__doc__.partition("\n")[0])
+    parser = argparse.ArgumentParser(prog="python -m tests.packaging.faults", description=__doc__.partition("\n")[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help="faults to make; all if none is named")
     parser.add_argument("--tests", choices=("named", "quick"), default="named", help="which tests are to catch them")
     options = parser.parse_args()
