@@ -7,13 +7,12 @@ from pathlib import Path
 
 from irsim.api.film_strip import moments_of
 from irsim.api.overlays import overlays_from
-from irsim.api.render_scenario import animate, write_sheet
-from irsim.api.take_snapshot import ended_before, extent_of, moved_view, snapshot_of_env
+from irsim.api.render_scenario import show_part, write_picture, write_sheet
+from irsim.api.take_snapshot import snapshot_of_env
 from irsim.common.files import check_suffix
 from irsim.env import Env
 from irsim.episodes.episode import Progress
 from irsim.episodes.opening import region_options
-from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult
 from irsim.runs.reading import open_run
 from irsim.runs.resimulation import follow_record, scenario_of, step_of
@@ -84,30 +83,16 @@ def render_run(
         )
         env.end(ending_time=0.0)
         return write_sheet(sheet, target, table)
-    if region is not None:
-        env._env_plot.set_region(region)
-    if size is not None:
-        env._env_plot.set_size(size)
-    animated = target.suffix.lower() in MOVING_SUFFIXES
-    if animated:
-        files = animate(env, last, target, progress, move=move)
-        frames = env._env_plot.frames_written
-    else:
-        move(last)
-        files, frames = [str(env.save_figure(target.absolute()))], 1
-    result = RenderResult(
+    show_part(env, size, region)
+    return write_picture(
+        env,
+        target,
+        last,
+        region=region,
+        progress=progress,
+        move=move,
         scenario=str(opened.meta.get("scenario")),
-        seed=env.seed,
-        steps=last,
-        frames=frames,
-        size=env._env_plot.size,
-        files=files,
         warnings=[],
-        ended=None if animated else ended_before(env),
-        view=None if region is not None else moved_view(env),
-        extent=extent_of(env),
         table=table,
         reproduce=reproduce,
     )
-    env.end(ending_time=0.0)
-    return result

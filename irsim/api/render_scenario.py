@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from irsim.api.read_input import opened_policy, read_scenario
 from irsim.api.take_snapshot import ended_before, extent_of, moved_view, snapshot_of
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from irsim.policies.catalog import PolicySource
     from irsim.results.picture import SceneTable
 
-__all__ = ["animate", "render", "write_sheet"]
+__all__ = ["animate", "render", "show_part", "write_picture", "write_sheet"]
 
 
 def render(
@@ -110,33 +110,72 @@ def render(
         )
         return write_sheet(sheet, target, scene_table(scenario, sheet.seed, driven if driver is not None else None))
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR", policy=driver)
+    show_part(env, size, region)
+    horizon, _ = horizon_of(env.simulation, steps if animated else steps or 0, limits or DEFAULT_LIMITS)
+    sized = [*([] if size is None else ["--size", str(size)]), *region_options(region)]
+    sized += [] if driven is None else ["--policy", driven]
+    repeated = seed_to_repeat(scenario, env.seed, random_parts(scenario))
+    return write_picture(
+        env,
+        target,
+        horizon,
+        region=region,
+        progress=progress,
+        scenario=str(path),
+        warnings=warnings,
+        table=scene_table(scenario, env.seed, driven if driver is not None else None),
+        reproduce=reproduce_command("render", path, repeated, steps, strict, imports, extra=[*sized, "-o", str(out)]),
+    )
+
+
+def show_part(env: Env, size: int | None, region: Sequence[float] | None) -> None:
+    """Set the size of a picture [px] and the part that it shows; None for those of the scenario."""
     if region is not None:
         env._env_plot.set_region(region)
     if size is not None:
         env._env_plot.set_size(size)
-    horizon, _ = horizon_of(env.simulation, steps if animated else steps or 0, limits or DEFAULT_LIMITS)
+
+
+def write_picture(
+    env: Env,
+    target: Path,
+    steps: int,
+    *,
+    region: Sequence[float] | None,
+    progress: Progress | None,
+    move: Callable[[int], None] | None = None,
+    **facts: Any,
+) -> RenderResult:
+    """Write an animation of an environment, or a picture of it after some steps, and end it.
+
+    Args:
+        env: The environment.
+        target: File to write; its suffix determines the format.
+        steps: The last step.
+        region: The part that was asked for.
+        progress: Callback ``(steps_done, steps_total)``.
+        move: Moves the environment to a step, in place of a simulation.
+        facts: Other fields of the result.
+    """
+    animated = target.suffix.lower() in MOVING_SUFFIXES
     if animated:
-        files = animate(env, horizon, target, progress)
-        frames = env._env_plot.frames_written
+        files = animate(env, steps, target, progress, move=move)
     else:
-        advance(env, horizon, progress, until_done=False)
-        files, frames = [str(env.save_figure(target.absolute()))], 1
-    sized = [*([] if size is None else ["--size", str(size)]), *region_options(region)]
-    sized += [] if driven is None else ["--policy", driven]
-    repeated = seed_to_repeat(scenario, env.seed, random_parts(scenario))
+        if move is not None:
+            move(steps)
+        else:
+            advance(env, steps, progress, until_done=False)
+        files = [str(env.save_figure(target.absolute()))]
     result = RenderResult(
-        scenario=str(path),
         seed=env.seed,
-        steps=int(env.simulation.count[0]),
-        frames=frames,
+        steps=steps if move is not None else int(env.simulation.count[0]),
+        frames=env._env_plot.frames_written if animated else 1,
         size=env._env_plot.size,
         files=files,
-        warnings=warnings,
         ended=None if animated else ended_before(env),
-        view=None if region is not None else moved_view(env),
+        view=moved_view(env) if region is None else None,
         extent=extent_of(env),
-        table=scene_table(scenario, env.seed, driven if driver is not None else None),
-        reproduce=reproduce_command("render", path, repeated, steps, strict, imports, extra=[*sized, "-o", str(out)]),
+        **facts,
     )
     env.end(ending_time=0.0)
     return result

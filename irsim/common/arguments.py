@@ -8,7 +8,7 @@ from typing import Any
 from irsim.common.text import clean
 from irsim.diagnostics.errors import InputError
 
-__all__ = ["as_given", "check_whole_number", "is_whole_number"]
+__all__ = ["as_given", "check_positive", "check_whole_number", "is_whole_number"]
 
 
 def is_whole_number(value: Any) -> bool:
@@ -34,6 +34,17 @@ def check_whole_number(name: str, value: Any, least: int = 0) -> int:
     if not is_whole_number(value) or value < least:
         raise InputError(f"{name} cannot be {as_given(value)}", f"give a whole number, {least} or more")
     return int(value)
+
+
+def check_positive(**values: float | None) -> None:
+    """Refuse arguments that are no positive numbers of a size that occurs; None stands for a default.
+
+    Raises:
+        InputError: A value is less than 1e-6, greater than 1e9 or not a number.
+    """
+    for name, value in values.items():
+        if value is not None and not 1e-6 <= value <= 1e9:
+            raise InputError(f"{name} must be a positive number, got {value}", f"give a {name} from 1e-6 to 1e9")
 
 
 def as_given(value: Any) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 __all__ = [
     "cell",
     "clean",
+    "decimal",
     "escape_marks",
     "listed",
     "markdown_code",
@@ -173,6 +174,12 @@ def quoted(name: object, longest: int = MAX_NAME) -> str:
 def plural(count: int, noun: str) -> str:
     """A number of things: ``1 error``, ``2 errors``."""
     return f"{count} {noun}{'s' * (count != 1)}"
+
+
+def decimal(value: float, digits: int) -> str:
+    """A number with at most so many digits behind the point, without an exponent: ``0.5``, ``12``."""
+    text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
 
 
 def listed(items: Sequence[str], most: int) -> str:

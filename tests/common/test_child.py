@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from irsim.common.child import Child, how_ended, python
+from tests.processes import runs, wait_until_gone
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="the system has no such limits")
 ECHO = "import sys\nfor line in sys.stdin.buffer:\n    sys.stdout.buffer.write(line)\n    sys.stdout.flush()"
@@ -67,19 +68,8 @@ def test_a_child_ends_with_a_parent_that_is_killed() -> None:
     parent = child_of(outer)
     pid = int(parent.receive(20) or b"0")
     parent.process.kill()
-    until = time.monotonic() + 20
-    while is_running(pid) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not is_running(pid)
+    wait_until_gone([pid])
     parent.end()
-
-
-def is_running(pid: int) -> bool:
-    """Whether a process runs; one that has ended but has not been waited for does not."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()[0] != "Z"
-    except (OSError, IndexError):
-        return False
 
 
 @POSIX
@@ -87,12 +77,9 @@ def test_what_a_child_has_started_ends_with_it() -> None:
     code = "import subprocess, sys\nprint(subprocess.Popen(['sleep', '60']).pid, flush=True)\nsys.stdin.read()"
     child = child_of(code)
     pid = int(child.receive(20) or b"0")
-    assert is_running(pid)
+    assert runs(pid)
     child.end()
-    until = time.monotonic() + 20
-    while is_running(pid) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not is_running(pid)
+    wait_until_gone([pid])
 
 
 def test_a_child_has_time_to_end_by_itself(tmp_path: Path) -> None:

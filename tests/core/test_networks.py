@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import irsim._core as core
+from tests.policies.networks.observed import same_bits
 
 TYPES = (np.float32, np.float64)
 FUNCTIONS: dict[str, Callable[[float], float]] = {
@@ -24,10 +25,6 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sin": math.sin,
     "cos": math.cos,
 }
-
-
-def same_bits(a: Any, b: Any) -> bool:
-    return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
 
 
 def in_order(x: Any, w: Any, b: Any) -> Any:

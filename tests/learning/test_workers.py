@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +31,7 @@ from tests.learning.tasks import (
     rich,
     task,
 )
+from tests.processes import runs, wait_until_gone
 
 pytestmark = pytest.mark.one_python
 
@@ -70,22 +70,6 @@ def same(a: Any, b: Any) -> bool:
     if one.dtype == object:
         return all(map(same, one, other))
     return one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
-
-
-def wait_for_end(pids: list[int], seconds: float = 10.0) -> None:
-    """Wait until processes have ended."""
-    until = time.monotonic() + seconds
-    while any(map(lives, pids)):
-        assert time.monotonic() < until, f"of {pids}, {[one for one in pids if lives(one)]} still live"
-        time.sleep(0.01)
-
-
-def lives(pid: int) -> bool:
-    """Whether a process lives; one that has ended and was not collected does not."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
 
 
 def pair(made: Any, slots: int, workers: int = 2, **keys: Any) -> tuple[VectorEnv, VectorEnv]:
@@ -230,7 +214,7 @@ def divided_env(made: Any, slots: int = 3) -> tuple[VectorEnv, list[int]]:
 def test_a_process_that_is_killed_is_an_error() -> None:
     env, pids = divided_env(task())
     os.kill(pids[0], signal.SIGKILL)
-    wait_for_end(pids)
+    wait_until_gone(pids)
     with pytest.raises(WorkerError, match=r"a worker process of the environment has died \(signal 9\)"):
         env.step(np.zeros((3, 2)))
     with pytest.raises(ArgumentError, match="the environment is closed"):
@@ -242,21 +226,21 @@ def test_a_process_that_ends_itself_is_an_error() -> None:
     env, pids = divided_env(task(reward=[of_python("deadly")]))
     with pytest.raises(WorkerError, match="exit code 3"):
         env.step(np.zeros((3, 2)))
-    wait_for_end(pids)
+    wait_until_gone(pids)
 
 
 def test_processes_end_with_the_environment() -> None:
     env, pids = divided_env(task())
-    assert all(map(lives, pids))
+    assert all(map(runs, pids))
     env.close()
     env.close()
-    assert not any(map(lives, pids))
+    assert not any(map(runs, pids))
     with pytest.raises(ArgumentError, match="the environment is closed"):
         env.reset()
     other, pids = divided_env(task())
     del other
     gc.collect()
-    assert not any(map(lives, pids))
+    assert not any(map(runs, pids))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
@@ -279,4 +263,4 @@ def test_processes_end_with_their_program(end: str, tmp_path: Path) -> None:
         if "sleep" in end:
             program.send_signal(signal.SIGKILL)
         program.wait(20)
-        wait_for_end(pids)
+        wait_until_gone(pids)

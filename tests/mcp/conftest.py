@@ -6,7 +6,6 @@ import functools
 import json
 import subprocess
 import sys
-import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -226,17 +225,3 @@ def children_of(pid: int) -> list[int]:
     folders = Path(f"/proc/{pid}/task").iterdir()
     children = [int(child) for folder in folders for child in (folder / "children").read_text().split()]
     return [child for child in children if child not in SERVERS]
-
-
-def runs(pid: int) -> bool:
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
-def wait_until_gone(pids: list[int], seconds: float) -> None:
-    end = time.monotonic() + seconds
-    while any(map(runs, pids)) and time.monotonic() < end:
-        time.sleep(0.02)
-    assert [pid for pid in pids if runs(pid)] == []

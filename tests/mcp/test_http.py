@@ -21,7 +21,8 @@ from irsim_mcp.hosts import Address, HttpRefused, address
 from irsim_mcp.http import application, token_from
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.server import build_server
-from tests.mcp.conftest import ERAS, LONG, ROOM, Caller, children_of, linux, wait_until_gone
+from tests.mcp.conftest import ERAS, LONG, ROOM, Caller, children_of, linux
+from tests.processes import wait_until_gone
 from tests.warm import warm_mcp
 
 TOKEN = "a-token-that-is-long-enough"

@@ -13,8 +13,9 @@ import pytest
 from mcp import Client
 
 import irsim
-from tests.mcp.conftest import CRASH, LONG, ROOM, Caller, Wire, as_process, connected, data_of, text_of, wait_until_gone
+from tests.mcp.conftest import CRASH, LONG, ROOM, Caller, Wire, as_process, connected, data_of, text_of
 from tests.mcp.test_benchmark import MANY, RANDOM
+from tests.processes import wait_until_gone
 from tests.warm import SERVERS
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]

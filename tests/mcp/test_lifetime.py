@@ -33,8 +33,8 @@ from tests.mcp.conftest import (
     error_of,
     linux,
     runs,
-    wait_until_gone,
 )
+from tests.processes import wait_until_gone
 
 pytestmark = [pytest.mark.one_python, pytest.mark.usefixtures("ordinary_processes")]
 

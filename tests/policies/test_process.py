@@ -26,6 +26,7 @@ from irsim.policies.catalog import UnknownPolicyError
 from irsim.policies.process import ProcessPolicy
 from irsim.policies.process.channel import Channel, PeerError
 from tests.policies.scenes import FREE
+from tests.processes import runs, wait_until_gone
 
 PROGRAM = lookup("process").example or ""
 """The program of the guide: it drives straight to the goal."""
@@ -133,6 +134,7 @@ def test_lost_episodes_of_a_benchmark_are_counted_and_the_others_go_on(tmp_path:
     assert [episode.lost for episode in again.episodes] == [episode.lost for episode in mine]  # seeds decide
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_a_process_ends_with_its_policy_and_takes_its_children_with_it(tmp_path: Path) -> None:
     note = tmp_path / "pids"
     started = "subprocess.Popen(['sleep', '99']).pid"
@@ -140,20 +142,10 @@ def test_a_process_ends_with_its_policy_and_takes_its_children_with_it(tmp_path:
     policy = program(tmp_path, before=f'if asked["type"] == "reset": {before}')
     irsim.run(text=FREE, policy=policy)
     pids = [int(pid) for pid in note.read_text().split()]
-    assert all(map(_runs, pids))
+    assert all(map(runs, pids))
     del policy
     gc.collect()
-    end = time.monotonic() + 20
-    while any(map(_runs, pids)) and time.monotonic() < end:
-        time.sleep(0.05)
-    assert not any(map(_runs, pids))
-
-
-def _runs(pid: int) -> bool:
-    stat = Path(f"/proc/{pid}/stat")
-    if sys.platform != "linux":
-        pytest.skip("reads /proc")
-    return stat.exists() and stat.read_text().rpartition(")")[2].split()[0] != "Z" and os.path.exists(f"/proc/{pid}")
+    wait_until_gone(pids)
 
 
 @pytest.mark.parametrize("family", ["inet", "unix"])

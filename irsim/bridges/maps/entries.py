@@ -11,7 +11,7 @@ import shapely
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.source import Outlined
 from irsim.common.arrays import Floats
-from irsim.common.text import clean, plural
+from irsim.common.text import clean, decimal, plural
 from irsim.options.units import MAX_VERTICES
 
 __all__ = ["entries_of"]
@@ -21,6 +21,8 @@ _SMALLEST = 1e-4
 """Smallest area of an obstacle [m²]."""
 _EXACT = 5e-4
 """Distance by which outlines may become simpler [m]."""
+_DIGITS = 4
+"""Digits of lengths behind the point."""
 _LEAST_CORNERS = 12
 """Corners of a regular polygon that is a disk."""
 _SAME = 1e-6
@@ -84,18 +86,19 @@ def _entry(region: Any, circle: tuple[float, float, float] | None, name: str) ->
     box = None if disk is not None else _box(region)
     if disk is not None:
         x, y, heading = disk[0], disk[1], 0.0
-        shape = f"name: circle, radius: {_short(disk[2])}"
+        shape = f"name: circle, radius: {decimal(disk[2], _DIGITS)}"
     elif box is not None:
         x, y, heading, length, width = box
-        shape = f"name: rectangle, length: {_short(length)}, width: {_short(width)}"
+        shape = f"name: rectangle, length: {decimal(length, _DIGITS)}, width: {decimal(width, _DIGITS)}"
     else:
         corners = _corners(region)
         x, y = corners.mean(axis=0).round(3).tolist()
         heading = 0.0
-        listed = ", ".join(f"[{_short(a - x)}, {_short(b - y)}]" for a, b in corners)
+        listed = ", ".join(f"[{decimal(a - x, _DIGITS)}, {decimal(b - y, _DIGITS)}]" for a, b in corners)
         shape = f"name: polygon, vertices: [{listed}]"
     comment = f"  # {clean(name, 60)}" if name else ""
-    return f"  - {{shape: {{{shape}}}, state: [{_short(x)}, {_short(y)}, {_short(heading)}]}}{comment}"
+    state = ", ".join(decimal(value, _DIGITS) for value in (x, y, heading))
+    return f"  - {{shape: {{{shape}}}, state: [{state}]}}{comment}"
 
 
 def _disk(region: Any) -> tuple[float, float, float] | None:
@@ -161,8 +164,3 @@ def _without_holes(region: Any) -> list[Any]:
         )
     parts = [part for half in halves for part in shapely.get_parts(region.intersection(half))]
     return [piece for part in parts if part.geom_type == "Polygon" for piece in _without_holes(part)]
-
-
-def _short(value: float) -> str:
-    """A number to a tenth of a millimeter."""
-    return repr(round(float(value), 4) + 0.0)

@@ -20,6 +20,7 @@ from irsim.bridges.maps.sidecar import MapSidecar, sidecar_path
 from irsim.bridges.maps.source import Occupancy, known_free
 from irsim.common.arrays import Floats
 from irsim.common.files import TargetError, check_new, create_bytes, make_folder_of, replace_bytes
+from irsim.common.text import decimal
 from irsim.components.maps._rosmap import RosMeta, pixels_of
 from irsim.scenario.yaml.modeline import with_modeline
 
@@ -29,6 +30,8 @@ _CLEARANCES = (0.5, 0.4, 0.3, 0.25, 0.2, 0.15, 0.1, 0.05)
 """Distances from obstacles that are tried [m], the widest first."""
 _SHARE = 0.7
 """Share of the diagonal of all free cells that the places with that clearance must reach over."""
+_DIGITS = 9
+"""Digits of lengths behind the point: others come from rounding."""
 _MAX_REACH = 64
 """Cells over which clearances are measured."""
 
@@ -129,9 +132,9 @@ def files_of(
     if trip is not None:
         lines += [f"  time_limit: {_time_limit(trip, width + height)}"]
     lines += [
-        f"  width: {_short(width)}",
-        f"  height: {_short(height)}",
-        f"  offset: [{_short(grid.x)}, {_short(grid.y)}]",
+        f"  width: {decimal(width, _DIGITS)}",
+        f"  height: {decimal(height, _DIGITS)}",
+        f"  offset: [{decimal(grid.x, _DIGITS)}, {decimal(grid.y, _DIGITS)}]",
     ]
     if described is not None:
         lines.append(f"  obstacle_map: {{name: ros, path: {json.dumps(described.name)}, unknown: unknown}}")
@@ -141,8 +144,8 @@ def files_of(
         lines += _robot(trip)
     if entries:
         lines += ["obstacle:", *entries]
-    place = (float(_short(grid.x)), float(_short(grid.y)), 0.0)
-    meta = RosMeta(picture.name, float(_short(grid.resolution)), place)
+    place = (round(grid.x, _DIGITS), round(grid.y, _DIGITS), 0.0)
+    meta = RosMeta(picture.name, round(grid.resolution, _DIGITS), place)
     grey = np.round(255 * (1 - np.clip(filled[:, ::-1].T, 0, 100) / 100)).astype(np.uint8)
     pixels = grey if described is None else pixels_of(values, meta)
     contents = [
@@ -184,11 +187,6 @@ def picture_bytes(pixels: np.ndarray, kind: str) -> bytes:
     target = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(pixels)).save(target, format=kind, optimize=kind == "PNG")
     return target.getvalue()
-
-
-def _short(value: float) -> str:
-    """A number without the digits that rounding left."""
-    return repr(round(value, 9))
 
 
 def write_all_or_none(contents: list[tuple[Path, bytes]], *, overwrite: bool) -> None:

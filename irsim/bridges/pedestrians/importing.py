@@ -24,6 +24,7 @@ from irsim.bridges.pedestrians.tracks import (
     read_homography,
     read_recording,
 )
+from irsim.common.arguments import check_positive
 from irsim.common.arrays import Floats
 from irsim.common.files import check_new, write_new
 from irsim.common.text import clean
@@ -193,10 +194,8 @@ def import_pedestrians(
 
 def _check_options(layout: Layout, episodes: Episodes, **numbers: float | None) -> None:
     """Refuse options outside of their bounds, before anything is read."""
-    lengths = {"length": episodes.length, "step_time": layout.step_time, "radius": layout.radius}
-    for name, value in {**numbers, **lengths, "windows": episodes.windows}.items():
-        if value is not None and not 1e-6 <= value <= 1e9:
-            raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} from 1e-6 to 1e9")
+    check_positive(**numbers, length=episodes.length, step_time=layout.step_time, radius=layout.radius)
+    check_positive(windows=episodes.windows)
     if episodes.windows > MAX_SCENARIOS:
         what = f"a suite has at most {MAX_SCENARIOS} windows, got {episodes.windows}"
         raise ArgumentError(what, "give fewer windows")

@@ -12,6 +12,7 @@ import numpy as np
 from irsim.bridges.base import BridgeError
 from irsim.bridges.pedestrians.tracks import Track
 from irsim.common.arrays import Floats
+from irsim.common.text import decimal
 from irsim.scenario.limits import DEFAULT_LIMITS
 
 __all__ = [
@@ -230,5 +231,5 @@ def _exact(value: float) -> str:
 
 
 def number(value: float) -> str:
-    """The number with four digits behind the point, as YAML."""
-    return _exact(round(float(value), 4))
+    """The number with at most four digits behind the point."""
+    return decimal(value, 4)

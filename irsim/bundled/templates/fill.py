@@ -16,6 +16,7 @@ from typing import Any
 import yaml
 
 from irsim.bundled.templates.store import Template, TemplateError
+from irsim.common.text import decimal
 from irsim.diagnostics.diagnostic import Path
 
 __all__ = ["evaluate", "fill", "format_value", "parse_path", "parse_settings", "replace_values"]
@@ -155,8 +156,7 @@ def format_value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
-        short = f"{value:.6f}".rstrip("0").rstrip(".")
-        return "0" if short == "-0" else short
+        return decimal(value, 6)
     if isinstance(value, list):
         return "[" + ", ".join(format_value(item) for item in value) + "]"
     if isinstance(value, dict):

@@ -50,7 +50,7 @@ from tests.bridges.maps import scenes
 from tests.bridges.maps.test_roads import road
 from tests.bridges.splats import scenes as splat_scenes
 from tests.fuzz.damaged.kind import IMPORT, Kind, made, read_map_of, text
-from tests.fuzz.damaged.places import PLACES
+from tests.fuzz.damaged.places import PLACES, ROS_MAP
 from tests.fuzz.damaged.verdicts import VERDICTS
 from tests.learning.tasks import corridor
 from tests.policies.converters import torch_bytes
@@ -60,7 +60,6 @@ from tests.runs.conftest import ROOM
 __all__ = ["KINDS"]
 
 _LIMITS = Limits(cells=250_000, map_bytes=1 << 20, objects=60, robots=60, steps=50)
-_MAP = "image: plan.png\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
 _HALL = "world: {width: 10, height: 10, obstacle_map: FILE}\nrobot: {kinematics: {name: diff}, state: [1, 1]}\n"
 _ROADS = f'<?xml version="1.0"?><OpenDRIVE><header revMajor="1" revMinor="7"/>{road("<line/>")}</OpenDRIVE>'
 _NEUPAN = (
@@ -91,7 +90,7 @@ def _picture(ending: str, mode: str = "L") -> Callable[[Path], Path]:
 def _map_file(folder: Path) -> Path:
     _plan().save(folder / "plan.png")
     (folder / "hall.yaml").write_text(_HALL.replace("FILE", "{name: ros, path: map.yaml}"))
-    (folder / "map.yaml").write_text(_MAP)
+    (folder / "map.yaml").write_text(ROS_MAP)
     return folder / "map.yaml"
 
 

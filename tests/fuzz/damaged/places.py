@@ -16,7 +16,7 @@ from tests.bridges.maps.test_gazebo_worlds import box as sdf_box
 from tests.bridges.maps.test_gazebo_worlds import link, model, shape
 from tests.fuzz.damaged.kind import IMPORT, Kind, made, read_map_of, text
 
-__all__ = ["PLACES"]
+__all__ = ["PLACES", "ROS_MAP"]
 
 _POLYLINE = "<polyline><height>1</height><point>0 0</point><point>2 0</point><point>0 2</point></polyline>"
 _CYLINDER = "<cylinder><radius>0.5</radius><length>1</length></cylinder>"
@@ -44,7 +44,8 @@ _ROAD = (
     f'<?xml version="1.0"?><commonRoad commonRoadVersion="2020a">{_LANE}{obstacle(BOX, 10, 1, 0.5)}'
     f"{obstacle(f'<polygon>{points((0, 0), (2, 0), (0, 2))}</polygon>', 3, 2)}</commonRoad>"
 )
-_MAP = "image: plan.png\nresolution: 0.5\norigin: [0, 0, 0.3]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+_CELLS = "resolution: 0.5\norigin: [0, 0, 0.3]\nnegate: 0\n"
+ROS_MAP = f"image: plan.png\n{_CELLS}occupied_thresh: 0.65\nfree_thresh: 0.196\n"
 
 
 def _write_footprints(file: Path) -> None:
@@ -65,7 +66,7 @@ def _write_extract(file: Path) -> None:
 
 def _ros_map(folder: Path) -> Path:
     Image.new("L", (20, 20), 255).save(folder / "plan.png")
-    return text("map.yaml", _MAP)(folder)
+    return text("map.yaml", ROS_MAP)(folder)
 
 
 def _read_ros_map(file: Path, draw: random.Random) -> None:

@@ -22,6 +22,7 @@ from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.usd.solids import prim_names
 from irsim.common.arrays import Floats
+from irsim.common.text import decimal
 from irsim.options.base import Options
 from irsim.options.units import Meters, Seconds
 
@@ -55,11 +56,11 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
             continue
         time, pose = times[there], poses[there, column]
         x, y, heading = pose[0].tolist()
-        degrees = _number(math.degrees(math.remainder(heading, math.tau)))
+        degrees = decimal(math.degrees(math.remainder(heading, math.tau)), 3)
         spawned.append(f"Spawn {word} {_point((x, y), options.z)} {degrees}")
         if time[0] > times[0]:
             late.append(word)
-            commands.append(f"{word} Idle {_number(float(time[0] - times[0]))}")
+            commands.append(f"{word} Idle {decimal(float(time[0] - times[0]), 3)}")
         commands += [f"{word} {text}" for text in _commands(time, pose[:, :2], options)]
     target.write_text("\n".join([*spawned, *commands]) + "\n", encoding="utf-8", newline="\n")
     renamed = [actor.name for actor, word in zip(episode.actors, names, strict=True) if actor.name != word]
@@ -91,7 +92,7 @@ def _commands(times: Floats, places: Floats, options: PeopleOptions) -> Iterator
             row += 1
             continue
         yield from _way(np.vstack([places[since:row], np.median(places[row : last + 1], axis=0)]), options)
-        yield f"Idle {_number(stood)}"
+        yield f"Idle {decimal(stood, 3)}"
         since = row = last
         if last == len(times) - 1:
             return
@@ -116,13 +117,7 @@ def _way(places: Floats, options: PeopleOptions) -> Iterator[str]:
 
 
 def _point(place: Sequence[float], z: float) -> str:
-    return f"{_number(place[0])} {_number(place[1])} {_number(z)}"
-
-
-def _number(value: float) -> str:
-    """A number with millimetres, or milliseconds."""
-    text = f"{value:.3f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
+    return f"{decimal(place[0], 3)} {decimal(place[1], 3)} {decimal(z, 3)}"
 
 
 FORMAT = Format("isaac_people", ".txt", _write, ranges=False, objects="people", options=PeopleOptions, named=True)

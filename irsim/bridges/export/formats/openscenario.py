@@ -26,6 +26,7 @@ from irsim.bridges.recorded import recorded_scene
 from irsim.bridges.solids import box_of
 from irsim.common.arrays import Floats
 from irsim.common.installed import version
+from irsim.common.text import decimal
 from irsim.options.base import Options
 from irsim.options.units import Degrees, Meters
 from irsim.runs.files import RunError
@@ -93,7 +94,7 @@ def _attributes(values: dict[str, object]) -> AttributesImpl[str]:
 
 def _text(value: object) -> str:
     if isinstance(value, float):
-        return f"{value:.6f}".rstrip("0").rstrip(".") if abs(value) < 1e9 else f"{value:g}"
+        return decimal(value, 6) if abs(value) < 1e9 else f"{value:g}"
     return _NOT_XML.sub("\ufffd", str(value))
 
 

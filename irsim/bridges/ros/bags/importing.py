@@ -17,10 +17,10 @@ from irsim.bridges.maps.writing import picture_bytes, write_all_or_none
 from irsim.bridges.ros.bags.reading import Recorded, read_bag
 from irsim.bridges.ros.incoming import Scan
 from irsim.bridges.ros.real import composed
+from irsim.common.arguments import check_positive
 from irsim.common.arrays import Floats
 from irsim.components.maps._rosmap import RosMeta, pixels_of
 from irsim.components.maps._site import FREE, OCCUPIED, UNKNOWN
-from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.scenario.yaml.modeline import with_modeline
 
@@ -238,10 +238,7 @@ def import_bag(
         ExtraError: rosbags is missing.
     """
     options, path, out = options or BagOptions(), Path(path), Path(out)
-    for name in ("resolution", "radius", "step_time", "range_max"):
-        value = getattr(options, name)
-        if value is not None and not 1e-6 <= value <= 1e9:
-            raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} from 1e-6 to 1e9")
+    check_positive(**{name: getattr(options, name) for name in ("resolution", "radius", "step_time", "range_max")})
     result = read_bag(path, options.odom, options.scan)
     rows = _rows(result, options)
     times, poses = result.times[rows] - result.times[rows[0]], result.poses[rows]
