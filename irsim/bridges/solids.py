@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from irsim.common.arrays import Floats
-from irsim.common.outline import BodyPart, Circle, Line, Outline, Polygon
+from irsim.common.outline import BodyPart, Circle, Line, Outline, Polygon, triangles_of
 from irsim.simulation.scene import Grid, SceneDescription, SceneObject
 
 __all__ = [
@@ -49,16 +49,10 @@ def is_convex(corners: Floats) -> bool:
 def triangles(corners: Floats) -> Floats:
     """(K, 3, 2) counterclockwise triangles that fill a simple polygon (N, 2), with its corners only."""
     region = shapely.Polygon(corners)
-    if not region.is_valid:
-        region = region.buffer(0)
-    result = []
-    for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(region)):
-        points = shapely.get_coordinates(triangle)[:3]
-        a, b = points[1] - points[0], points[2] - points[0]
-        area = float(a[0] * b[1] - a[1] * b[0]) / 2
-        if abs(area) > _SMALLEST_AREA:
-            result.append(points if area > 0 else points[::-1])
-    return np.array(result).reshape(-1, 3, 2)
+    result = triangles_of(region if region.is_valid else region.buffer(0))
+    (ax, ay), (bx, by) = (result[:, 1] - result[:, 0]).T, (result[:, 2] - result[:, 0]).T
+    large: Floats = result[(ax * by - ay * bx) / 2 > _SMALLEST_AREA]
+    return large
 
 
 def convex_pieces(corners: Floats) -> list[Floats]:

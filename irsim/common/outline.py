@@ -12,7 +12,19 @@ import numpy as np
 import irsim._core as core
 from irsim.common.arrays import Floats
 
-__all__ = ["BodyPart", "Cells", "Circle", "Line", "Outline", "Part", "Polygon", "outline", "points_of"]
+__all__ = [
+    "BodyPart",
+    "Cells",
+    "Circle",
+    "Line",
+    "Outline",
+    "Part",
+    "Polygon",
+    "outline",
+    "part_of",
+    "points_of",
+    "triangles_of",
+]
 
 _HULL_CORNERS = 16
 """Number of corners of the polygon around a circle in a hull."""
@@ -116,11 +128,15 @@ class Outline:
         corners: Floats = shapely.get_coordinates(shapely.orient_polygons(hull) if is_area else hull)
         return corners[:-1] if is_area else corners
 
-    def shapely(self) -> Any:
-        """The only part as a shapely geometry, or the union of several; circles are polygons of 64 corners."""
+    def shapely(self, quarter: int = _QUARTER_SEGMENTS) -> Any:
+        """The only part as a shapely geometry, or the union of several.
+
+        Args:
+            quarter: Segments of a quarter circle: circles are polygons.
+        """
         import shapely
 
-        made = [_shapely_of(part) for part in self.parts]
+        made = [_shapely_of(part, quarter) for part in self.parts]
         return made[0] if len(made) == 1 else shapely.union_all(made)
 
     def core(self) -> list[core.Part]:
@@ -156,6 +172,28 @@ def _part(state: core.State, row: int, part: int, kind: str, world_frame: bool) 
     return Line(points, closed=kind == "room") if grid is None else Cells(grid, points)
 
 
+def part_of(part: core.Part) -> BodyPart | None:
+    """A part of the core; None for a map, and for what is drawn anew for each scene."""
+    if isinstance(part, core.Circle):
+        x, y = part.center
+        return Circle((x, y), part.radius)
+    if isinstance(part, core.Polygon):
+        return Polygon(np.array(part.vertices))
+    if isinstance(part, (core.Linestring, core.Room)):
+        return Line(np.array(part.vertices), closed=isinstance(part, core.Room))
+    return None
+
+
+def triangles_of(region: Any) -> Floats:
+    """(K, 3, 2) counterclockwise triangles that fill the areas of a shapely geometry, with its corners only."""
+    import shapely
+
+    areas = [part for part in shapely.get_parts(region) if part.geom_type == "Polygon"]
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(np.array(areas, dtype=object)))
+    corners: Floats = shapely.get_coordinates(shapely.orient_polygons(parts)).reshape(-1, 4, 2)[:, :3]
+    return corners
+
+
 def _around(circle: Circle) -> Floats:
     angle = (np.arange(_HULL_CORNERS) + 0.5) * (2 * np.pi / _HULL_CORNERS)
     radius = circle.radius / np.cos(np.pi / _HULL_CORNERS)
@@ -163,11 +201,11 @@ def _around(circle: Circle) -> Floats:
     return np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)])
 
 
-def _shapely_of(part: Part) -> Any:
+def _shapely_of(part: Part, quarter: int) -> Any:
     import shapely
 
     if isinstance(part, Circle):
-        return shapely.Point(part.center).buffer(part.radius, quad_segs=_QUARTER_SEGMENTS)
+        return shapely.Point(part.center).buffer(part.radius, quad_segs=quarter)
     if isinstance(part, Polygon):
         return shapely.Polygon(part.corners)
     if isinstance(part, Cells):

@@ -12,9 +12,7 @@ __all__ = ["called", "counts_of", "in_words"]
 def called(scenario: ResolvedScenario, name: str | None) -> str:
     """How a sentence calls an object: its name in quotes, or ``the map``, ``the walls round the world``."""
     record = next((item for item in scenario.objects if item.name == name), None)
-    if record is None or not record.is_terrain:
-        return quoted(name)
-    return "the walls round the world" if isinstance(record.shape, Walls) else "the map"
+    return quoted(name) if record is None else record.called
 
 
 def counts_of(scenario: ResolvedScenario) -> dict[str, int]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import irsim._core as core
+from irsim.common.outline import Outline, part_of
 from irsim.components.kinematics._handler import handler_class
 from irsim.components.options import BehaviorOptions
 from irsim.options.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
@@ -311,10 +312,6 @@ def _is_drawn(record: ObjectRecord) -> bool:
     return any(isinstance(part, (core.RandomCircle, core.RandomPolygon, core.PerlinCells)) for part in parts)
 
 
-_SEGMENTS_PER_QUARTER = 16
-"""Number of segments that stand for a quarter circle."""
-
-
 def compound_body(parts: Sequence[Any]) -> list[float]:
     """Return centroid and squared radius of gyration of the area that the parts of a compound cover together.
 
@@ -323,19 +320,10 @@ def compound_body(parts: Sequence[Any]) -> list[float]:
         [m^2], where holes count as filled. An empty list if a part is random, because its shape changes with each
         scene.
     """
-    import shapely
-
-    shapes: list[Any] = []
-    for part in parts:
-        if isinstance(part, core.Circle):
-            shapes.append(shapely.Point(part.center).buffer(part.radius, quad_segs=_SEGMENTS_PER_QUARTER))
-        elif isinstance(part, core.Polygon):
-            shapes.append(shapely.Polygon(part.vertices))
-        elif isinstance(part, core.Linestring):
-            shapes.append(shapely.LineString(part.vertices))
-        else:
-            return []
-    area: Any = shapely.union_all(shapes)
+    known = [part for part in map(part_of, parts) if part is not None]
+    if len(known) < len(parts):
+        return []
+    area = Outline(known).shapely()
     centre = [area.centroid.x, area.centroid.y]
     return [*centre, _gyration2(area.exterior.coords, centre)] if area.geom_type == "Polygon" else centre
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.common.outline import Cells, Circle, Line, Outline, Polygon, outline
+from irsim.common.outline import Cells, Circle, Line, Outline, Polygon, outline, part_of, triangles_of
 from irsim.simulation.simulation import Simulation
 
 SCENE = """
@@ -87,6 +87,29 @@ def test_shapely_core_and_box_agree(simulation: Simulation, shape: str) -> None:
     still = [0.0, 0.0, 0.0]
     assert core.intersects(body.core(), still, [core.Circle(radius=1e-6, center=(x, y))], still)
     assert not core.intersects(body.core(), still, [core.Circle(radius=0.01, center=(-5, -5))], still)
+
+
+def test_the_core_gives_back_the_parts(simulation: Simulation) -> None:
+    for shape in ("circle", "rectangle", "linestring", "compound", "walls"):
+        body = outline(simulation.state, row_of(simulation, shape))
+        again = Outline([part for part in map(part_of, body.core()) if part is not None])
+        assert again.shapely(8).equals(body.shapely(8))
+        assert [type(part) for part in again.parts] == [type(part) for part in body.parts]
+    assert part_of(outline(simulation.state, row_of(simulation, "map")).core()[0]) is None
+
+
+def test_triangles_fill_areas_with_holes_and_leave_out_lines() -> None:
+    import shapely
+
+    ring = shapely.box(0, 0, 4, 4).difference(shapely.box(1, 1, 2, 2))
+    triangles = triangles_of(
+        shapely.GeometryCollection([ring, shapely.box(9, 0, 8, 2), shapely.LineString([(0, 0), (1, 1)])])
+    )
+    first, second = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    areas = (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / 2
+    assert (areas > 0).all()
+    assert areas.sum() == pytest.approx(17.0)
+    assert triangles_of(shapely.Point(0, 0)).shape == (0, 3, 2)
 
 
 def test_the_hull_encloses_circles_and_runs_counterclockwise(simulation: Simulation) -> None:

@@ -12,8 +12,9 @@ import irsim._core as core
 from irsim.components.shapes.polygon import Polygon
 from irsim.components.shapes.rectangle import Rectangle
 from irsim.diagnostics.diagnostic import Diagnostic
+from irsim.scenario.checks._outlines import segment_gap
 from irsim.scenario.read import read
-from irsim.scenario.resolve.body_size import inner_disc, segment_gap, thickness
+from irsim.scenario.resolve.body_size import inner_disc, thickness
 
 BASE = {
     "kinematics": {"name": "diff"},

@@ -11,6 +11,7 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import SIDES, Bools, Grid, fits_into, fitting_side, grid_over, rows_of, side_notes
 from irsim.bridges.maps.regions import keep_part
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Occupancy, Outlined, Outlines
+from irsim.common.outline import triangles_of
 from irsim.components.maps._site import FREE, OCCUPIED, UNKNOWN
 
 __all__ = ["occupancy_of_outlines", "outlines_within"]
@@ -126,10 +127,7 @@ def _fits(solid: Any, side: float) -> bool:
 def _painted(region: Any, grid: Grid, *, touched: bool = False) -> Bools:
     """(nx, ny) cells whose centers are in an area, or that it touches."""
     result = np.zeros((grid.nx, grid.ny), bool)
-    areas = [part for part in shapely.get_parts(region) if part.geom_type == "Polygon"]
-    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(np.array(areas, dtype=object)))
-    corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3]
-    corners = (corners - [grid.x, grid.y]) / grid.resolution
+    corners = (triangles_of(region) - [grid.x, grid.y]) / grid.resolution
     for _, i, j, _ in rows_of(np.clip(corners, 0, [grid.nx - 1e-6, grid.ny - 1e-6]), at_centers=not touched):
         result[i, j] = True
     return result

@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 import shapely
 from shapely.affinity import affine_transform
-from shapely.geometry.base import BaseGeometry
 
 from irsim.bridges.mujoco.mjcf import MAP_BODY, body_name
 from irsim.bridges.mujoco.physics import Physics
 from irsim.bridges.solids import merged_cells
 from irsim.common.files import write_atomically
-from irsim.common.outline import BodyPart, Circle, Line
+from irsim.common.outline import Outline
 from irsim.common.text import plural
 
 __all__ = ["Contact", "Contacts", "MujocoReport", "log_report", "write_report"]
@@ -28,6 +27,8 @@ _GHOST = 0.02
 """Distance of footprints from which a contact is one that irsim does not have [m]: walls are 1 cm thick in MuJoCo."""
 _BOUNCE_S = 0.5
 """Time without contact after which the next one counts as another one [s]."""
+_QUARTER = 32
+"""Segments of a quarter circle of a footprint."""
 _MAX_LISTED = 1000
 """Contacts beyond this number are counted but not listed."""
 
@@ -127,7 +128,7 @@ class Contacts:
         (x, y), turn = data.xpos[body, :2], data.xmat[body].reshape(3, 3)
         yaw = float(np.arctan2(turn[1, 0], turn[0, 0]))
         cosine, sine = np.cos(yaw), np.sin(yaw)
-        return affine_transform(_footprint(agent.parts), [cosine, -sine, sine, cosine, x, y])
+        return affine_transform(Outline(agent.parts).shapely(_QUARTER), [cosine, -sine, sine, cosine, x, y])
 
     @cached_property
     def _map(self) -> Any:
@@ -137,19 +138,6 @@ class Contacts:
     @cached_property
     def _walls(self) -> Any:
         return shapely.box(*self._scene.low, *self._scene.high).exterior
-
-
-def _footprint(parts: tuple[BodyPart, ...]) -> BaseGeometry:
-    """The footprint as a shape of shapely, body frame."""
-    shapes: list[BaseGeometry] = []
-    for part in parts:
-        if isinstance(part, Circle):
-            shapes.append(shapely.Point(part.center).buffer(part.radius, quad_segs=32))
-        elif isinstance(part, Line):
-            shapes.append(shapely.LineString(part.path))
-        else:
-            shapes.append(shapely.Polygon(part.corners))
-    return shapely.union_all(shapes)
 
 
 @dataclass(frozen=True)

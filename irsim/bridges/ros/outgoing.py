@@ -8,7 +8,6 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import shapely
 
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import (
@@ -22,8 +21,8 @@ from irsim.bridges.ros.topics import (
 )
 from irsim.bridges.state import WorldState
 from irsim.common.arrays import Floats
-from irsim.common.outline import BodyPart, Circle, Polygon
-from irsim.graphics.scene.bodies import geometry_of
+from irsim.common.outline import BodyPart, Circle, Polygon, triangles_of
+from irsim.graphics.scene.bodies import area_of, geometry_of
 from irsim.graphics.scene.scene import Region
 from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
 
@@ -134,7 +133,7 @@ def triangles_marker(
     """A region that is filled with triangles."""
     marker = make_marker(messages, "bodies", number, TRIANGLES, *looks, frame, pose)
     marker.scale.x = marker.scale.y = marker.scale.z = 1.0
-    marker.points = messages.points(triangles(rings))
+    marker.points = messages.points(triangles_of(area_of(Region(rings))).reshape(-1, 2))
     return marker
 
 
@@ -155,16 +154,6 @@ def part_marker(
     marker = make_marker(messages, "bodies", number, LINE_STRIP, *looks, frame, pose)
     marker.scale.x, marker.points = LINE_WIDTH_M, messages.points(part.path)
     return marker
-
-
-def triangles(rings: list[Floats]) -> Floats:
-    """(3 K, 2) corners of K triangles that fill a region, whose outlines run counter-clockwise and holes clockwise."""
-    areas = [shapely.Polygon(ring) for ring in rings]
-    outlines = [area for area in areas if area.exterior.is_ccw]
-    holes = [area for area in areas if not area.exterior.is_ccw]
-    region = shapely.union_all(outlines).difference(shapely.union_all(holes))
-    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(region))
-    return np.concatenate([shapely.get_coordinates(triangle)[:3] for triangle in parts])
 
 
 _MAX_ASPECT_ERROR = 1e-6

@@ -21,6 +21,7 @@ from irsim.bridges.splats.reading import read_splats
 from irsim.bridges.splats.recording import Recording, open_recording
 from irsim.bridges.splats.splats import Splats, moved
 from irsim.common.files import check_suffix, code_of, replacing
+from irsim.common.outline import triangles_of
 from irsim.common.pages import bundle, one_page
 from irsim.common.text import clean
 from irsim.runs.files import RunError
@@ -148,7 +149,7 @@ def _content(
             "color": body.color,
             "height": body.height,
             "outlines": body.outlines,
-            "triangles": body.triangles,
+            "triangles": triangles_of(body.shape).reshape(-1, 2).tolist(),
             "path": body.role == "robot",
         }
         for body in recording.bodies

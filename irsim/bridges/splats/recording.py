@@ -15,7 +15,7 @@ from irsim.bridges.export.cameras import PoseOptions, Scene, scene_of
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.bridges.splats.splats import Singles, Splats
 from irsim.common.arrays import Floats
-from irsim.common.outline import Circle, Line, Polygon
+from irsim.common.outline import Line, Outline
 from irsim.runs.reading import Run, open_run
 from irsim.scenario.limits import Limits
 from irsim.simulation.scene import SceneDescription, SceneObject
@@ -25,7 +25,8 @@ __all__ = ["Body", "Recording", "body_of", "body_splats", "open_recording", "pat
 ROBOT_HEIGHT_M, WALKER_HEIGHT_M, THING_HEIGHT_M = 0.5, 1.7, 1.0
 """Heights that objects of the plane are shown with: robots, other objects that move, and static objects."""
 _LINE_WIDTH_M = 0.06
-_CIRCLE_SIDES = 32
+_QUARTER = 8
+"""Segments of a quarter circle of a footprint."""
 _PATH_WIDTH_M = 0.035
 _MAX_SPLATS = 4000
 """Splats of one body."""
@@ -56,14 +57,6 @@ class Body:
         rings = [ring for polygon in shapely.get_parts(self.shape) for ring in (polygon.exterior, *polygon.interiors)]
         return [[(float(x), float(y)) for x, y in ring.coords] for ring in rings]
 
-    @property
-    def triangles(self) -> list[tuple[float, float]]:
-        """Corners of triangles that cover the footprint, three after each other."""
-        result = []
-        for triangle in shapely.constrained_delaunay_triangles(self.shape).geoms:
-            result += [(float(x), float(y)) for x, y in triangle.exterior.coords[:3]]
-        return result
-
 
 def body_of(agent: SceneObject) -> Body | None:
     """Shape and color of an object; None if it does not stand in the world.
@@ -71,17 +64,10 @@ def body_of(agent: SceneObject) -> Body | None:
     Args:
         agent: The object.
     """
-    parts = []
-    for part in agent.parts if agent.solid else ():
-        match part:
-            case Circle():
-                turn = np.linspace(0, 2 * math.pi, _CIRCLE_SIDES, endpoint=False)
-                ring = np.asarray(part.center) + part.radius * np.column_stack([np.cos(turn), np.sin(turn)])
-                parts.append(shapely.Polygon(ring))
-            case Polygon():
-                parts.append(shapely.Polygon(part.corners).buffer(0))
-            case Line():
-                parts.append(shapely.LineString(part.path).buffer(_LINE_WIDTH_M / 2, cap_style="flat"))
+    parts = [
+        Outline([part]).shapely(_QUARTER).buffer(_LINE_WIDTH_M / 2 if isinstance(part, Line) else 0, cap_style="flat")
+        for part in (agent.parts if agent.solid else ())
+    ]
     shape = shapely.orient_polygons(shapely.union_all(parts))
     if shape.is_empty or shape.area <= 0:
         return None

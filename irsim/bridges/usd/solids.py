@@ -15,7 +15,7 @@ from shapely.geometry.base import BaseGeometry
 
 from irsim.bridges.solids import merged_cells
 from irsim.common.arrays import Floats
-from irsim.common.outline import Circle, Line, Polygon
+from irsim.common.outline import Circle, Line, Polygon, triangles_of
 from irsim.simulation.scene import Grid
 
 __all__ = [
@@ -152,9 +152,7 @@ def _prism(region: BaseGeometry, height: float) -> Solid | None:
         for ring in (area.exterior, *area.interiors):
             numbers = [corners.setdefault(point, len(corners)) for point in ring.coords]
             sides += itertools.pairwise(numbers)
-        for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(area)):
-            ring = shapely.orient_polygons(triangle).exterior
-            triangles.append([corners[point] for point in ring.coords[:3]])
+        triangles += [[corners[x, y] for x, y in triangle] for triangle in triangles_of(area).tolist()]
     count = len(corners)
     flat = np.array(list(corners), dtype=np.float64)
     top, around = np.array(triangles, dtype=np.int64) + count, np.array(sides, dtype=np.int64)

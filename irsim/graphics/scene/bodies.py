@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from irsim.common import outline as outlines
-from irsim.common.arrays import Floats
 from irsim.common.outline import outline
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Picture, Region, Sector
 
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Body",
     "Pose",
+    "area_of",
     "arrow",
     "bounds",
     "box",
@@ -88,9 +88,13 @@ def read_body(state: State, row: int) -> Body:
 
 
 def geometry_of(parts: Sequence[outlines.Part]) -> Geometry:
-    """Return the parts of a body as one geometry: the only one, or the union of several."""
-    geometries = [_geometry_of(part) for part in parts]
-    return geometries[0] if len(geometries) == 1 else _union(geometries)
+    """Return the parts of a body as one geometry: the only one, or the union of several.
+
+    A union has one outline where parts overlap, so that a translucent compound has no darker places.
+    """
+    if len(parts) == 1:
+        return _geometry_of(parts[0])
+    return _region_of(outlines.Outline(parts).shapely(_SEGMENTS_PER_QUARTER))
 
 
 def place(geometry: Geometry, pose: Pose) -> Geometry:
@@ -171,7 +175,7 @@ def point_on(geometry: Geometry, view: tuple[float, float, float, float] | None 
     elif isinstance(geometry, Line):
         shape = shapely.MultiLineString(list(zip(geometry.points[:-1], geometry.points[1:], strict=True)))
     else:
-        shape = _polygon_of(geometry)
+        shape = area_of(geometry)
     seen = shape if view is None else shape.intersection(shapely.box(*view))
     pieces = [piece for piece in getattr(seen, "geoms", [seen]) if not piece.is_empty]
     if not pieces:
@@ -186,7 +190,7 @@ def point_on(geometry: Geometry, view: tuple[float, float, float, float] | None 
     return float(inside.x), float(lowest.bounds[3])
 
 
-def _polygon_of(region: Region) -> Any:
+def area_of(region: Region) -> Any:
     """Return a region as a shapely geometry; its outlines run counter-clockwise, its holes clockwise."""
     import shapely
 
@@ -196,23 +200,10 @@ def _polygon_of(region: Region) -> Any:
     return shapely.difference(shapely.union_all(outlines), shapely.union_all(holes))
 
 
-def _union(geometries: list[Geometry]) -> Geometry:
-    """Unite overlapping parts in one outline, so that a translucent compound has no darker overlaps."""
+def _region_of(area: Any) -> Region:
+    """Return a polygon of shapely, or several, as a region."""
     import shapely
 
-    shapes = []
-    for geometry in geometries:
-        if isinstance(geometry, Circle):
-            shapes.append(
-                shapely.Point(geometry.x, geometry.y).buffer(geometry.radius, quad_segs=_SEGMENTS_PER_QUARTER)
-            )
-        elif isinstance(geometry, Region):
-            shapes.append(shapely.Polygon(geometry.rings[0]))
-        else:
-            raise TypeError(f"a compound must consist of circles and regions, got a {type(geometry).__name__}")
-    union = shapely.union_all(shapes)
-    rings: list[Floats] = []
-    for polygon in getattr(union, "geoms", [union]):
-        outline = shapely.geometry.polygon.orient(polygon)
-        rings += [np.asarray(ring.coords)[:-1] for ring in (outline.exterior, *outline.interiors)]
-    return Region(rings)
+    areas = shapely.get_parts(shapely.orient_polygons(area))
+    rings = [ring for polygon in areas for ring in (polygon.exterior, *polygon.interiors)]
+    return Region([np.asarray(ring.coords)[:-1] for ring in rings])

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.messages.findings import Finding, error
 from irsim.scenario.yaml.formatting import flow
 
-__all__ = ["check_polygon", "check_rectangle", "crosses_itself", "distinct_corners", "repair_outline"]
+__all__ = ["check_polygon", "check_rectangle", "crosses_itself", "distinct_corners", "repair_outline", "segment_gap"]
 
 
 def check_rectangle(path: Path, rectangle: Sequence[float]) -> Iterator[Finding]:
@@ -117,6 +118,22 @@ def repair_outline(vertices: Sequence[Sequence[float]]) -> list[list[list[float]
         polygons = [polygon for polygon in sorted(pieces, key=lambda p: p.bounds) if polygon.area > _MIN_AREA]
     outlines = [[[float(x), float(y)] for x, y in polygon.exterior.coords[:-1]] for polygon in polygons]
     return outlines or None
+
+
+def segment_gap(first: tuple[Corner, Corner], second: tuple[Corner, Corner]) -> float:
+    """Distance between two segments [m]."""
+    (a, b), (c, d) = first, second
+    if _meet(a, b, c, d):
+        return 0.0
+    return min(_gap(c, a, b), _gap(d, a, b), _gap(a, c, d), _gap(b, c, d))
+
+
+def _gap(p: Corner, a: Corner, b: Corner) -> float:
+    """Distance from a point to a segment [m]."""
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    length = dx * dx + dy * dy
+    t = min(1.0, max(0.0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length)) if length > 0 else 0.0
+    return math.hypot(p[0] - a[0] - t * dx, p[1] - a[1] - t * dy)
 
 
 def _side(a: Corner, b: Corner, p: Corner) -> float:

@@ -71,7 +71,7 @@ def check(context: Context) -> Iterator[Finding]:
         yield (hint if harmless else warning)(
             "initial-overlap",
             where,
-            f"'{mover.name}' {_meets(mover, harmless)} {_describe(other)}{deep}"
+            f"'{mover.name}' {_meets(mover, harmless)} {other.called}{deep}"
             + (f", and {_count_of_others(count)} more such pairs of these entries" if count > 1 else ""),
             fix="move one of them, or make it smaller" + instead
             if other.path[0] != "world"
@@ -172,11 +172,6 @@ def _free_place(context: Context, mover: SizedBody, bodies: list[SizedBody]) -> 
             if not terrain.collides(mover.shape.parts, (*place, heading)):
                 return place
     return None
-
-
-def _describe(record: ObjectRecord) -> str:
-    kinds = {"map": f"the map ('{record.name}')", "walls": "the walls round the world"}
-    return kinds.get(record.shape.name, f"'{record.name}'")
 
 
 def _reports_stacking(entry: Entry) -> bool:

@@ -11,8 +11,9 @@ import irsim._core as core
 from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks._context import Context
+from irsim.scenario.checks._outlines import segment_gap
 from irsim.scenario.messages.findings import Finding, warning
-from irsim.scenario.resolve.body_size import Point, SizedBody, SizedShape, has_fixed_shape, segment_gap
+from irsim.scenario.resolve.body_size import Point, SizedBody, SizedShape, has_fixed_shape
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _PASSABLE = ("unobstructed", "reactive")
@@ -23,7 +24,6 @@ _MAX_LEGS = 1000
 """Largest number of legs of a path that is examined; an object with more legs is assumed to get anywhere."""
 _TURNING_RADII = 2.0
 """Space that an object needs to turn towards its goal, in radii of its turning circle."""
-_NAMES = {"map": "the map", "walls": "the walls round the world"}
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -74,7 +74,7 @@ def check(context: Context) -> Iterator[Finding]:
 
 def _finding(context: Context, one: SizedBody, other: SizedBody, least: float, speed: float) -> Finding:
     dt = context.scenario.world.step_time
-    thing = _NAMES.get(other.record.shape.name, f"'{other.record.name}'")
+    thing = other.record.called
     together = "" if other.speed == 0 else f", and {thing} {metres(other.speed * dt)} towards it"
     longest = math.floor(least / speed * 100) / 100 or float(f"{least / speed:.1g}")
     return warning(

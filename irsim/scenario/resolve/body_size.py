@@ -23,7 +23,6 @@ __all__ = [
     "has_fixed_shape",
     "inner_disc",
     "reach_of",
-    "segment_gap",
     "thickness",
     "top_speed",
 ]
@@ -101,26 +100,6 @@ def thickness(shape: Any) -> float:
         elif isinstance(part, core.GridCells):
             least = min(least, cell)
     return least
-
-
-def segment_gap(first: tuple[Point, Point], second: tuple[Point, Point]) -> float:
-    """Distance between two segments [m]."""
-    (a, b), (c, d) = first, second
-
-    def side(p: Point, q: Point, r: Point) -> float:
-        return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
-
-    if side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0:
-        return 0.0
-    return min(_gap(c, a, b), _gap(d, a, b), _gap(a, c, d), _gap(b, c, d))
-
-
-def _gap(p: Point, a: Point, b: Point) -> float:
-    """Distance from a point to a segment [m]."""
-    dx, dy = b[0] - a[0], b[1] - a[1]
-    length = dx * dx + dy * dy
-    t = min(1.0, max(0.0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length)) if length > 0 else 0.0
-    return math.hypot(p[0] - a[0] - t * dx, p[1] - a[1] - t * dy)
 
 
 def top_speed(record: Any) -> float:

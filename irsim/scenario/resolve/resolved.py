@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
+from irsim.common.text import quoted
 from irsim.components.options import BehaviorOptions, CustomOptions
 
 __all__ = [
@@ -26,6 +27,10 @@ if TYPE_CHECKING:
     from irsim.components.maps._grid import MapGrid
     from irsim.diagnostics.diagnostic import Path
     from irsim.scenario.model.scenario import Gui, ObjectPlot, WorldModel
+
+
+_TERRAIN = {"map": "the map", "walls": "the walls round the world"}
+"""Shapes that keys of ``world`` make -> how a sentence calls them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +117,12 @@ class ObjectRecord:
     @property
     def is_terrain(self) -> bool:
         """Whether a key of ``world`` made it: the map, or the walls round the world."""
-        return self.shape.name in ("map", "walls")
+        return self.shape.name in _TERRAIN
+
+    @property
+    def called(self) -> str:
+        """How a sentence calls it: its name in quotes, or ``the map``, ``the walls round the world``."""
+        return _TERRAIN.get(self.shape.name, quoted(self.name))
 
     @property
     def active_behavior(self) -> Any:

@@ -126,7 +126,6 @@ def _blocker(context: Context, scene: Scene, mover: Mover, goal: list[float], ra
     still = [r for r in context.resolved.objects if r.static and not r.unobstructed]
     for record, (parts, pose) in zip(still, scene.things, strict=False):
         if core.intersects(parts, pose, disc, (goal[0], goal[1], 0.0)):
-            kinds = {"map": "the map", "walls": "the wall around the world"}
-            return kinds.get(record.shape.name, f"'{record.name}'")
+            return record.called
     grid = context.resolved.grid
     return "an unknown part of the map" if grid is not None and grid.unknown else "an obstacle"
