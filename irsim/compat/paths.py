@@ -37,13 +37,14 @@ SAME: dict[str, str] = {
 """Old path -> the module that it is another name of."""
 
 _NAMES_BY_HOME: dict[str, dict[str, str]] = {
+    "irsim.env.env_base3d": {"irsim.env.old.env_base3d": "EnvBase3D World3D"},
     "irsim.env.env_config": {"irsim.env.old.factory": "EnvConfig"},
     "irsim.env.env_logger": {"irsim.common.log:Logger": "EnvLogger"},
     "irsim.env.env_plot": {
-        "irsim.rendering.env_plot": "EnvPlot",
+        "irsim.env.old.env_plot": "EnvPlot",
         "irsim.graphics.figure.artists": "draw_patch geometry_to_path linewidth_from_data_units set_patch_property",
     },
-    "irsim.env.env_plot3d": {"irsim.rendering.env_plot3d": "EnvPlot3D"},
+    "irsim.env.env_plot3d": {"irsim.env.old.env_plot3d": "EnvPlot3D"},
     "irsim.lib": {
         "irsim.compat.planners": "AStarPlanner InformedRRTStar JPSPlanner PRMPlanner RRT RRTStar",
         "irsim.compat.handlers.behavior": "Behavior GroupBehavior",
@@ -185,7 +186,7 @@ _NAMES_BY_HOME: dict[str, dict[str, str]] = {
     "irsim.world.sensors.lidar2d": {"irsim.objects.sensors.lidar": "Lidar2D"},
     "irsim.world.sensors.sensor_factory": {"irsim.env.old.factory": "SensorFactory"},
     "irsim.world.world": {"irsim.env.old.construct": "World"},
-    "irsim.world.world3d": {"irsim.env.env_base3d": "World3D"},
+    "irsim.world.world3d": {"irsim.env.old.env_base3d": "World3D"},
 }
 """Old path of a module that only re-exports -> a module of today (``module:name`` for another name) -> names."""
 

@@ -11,8 +11,8 @@ from irsim.env.live import attach_live, carry_out_requests, detach_live
 from irsim.env.state import EnvState
 
 if TYPE_CHECKING:
+    from irsim.env.old.env_plot import EnvPlot
     from irsim.gui import MouseControl
-    from irsim.rendering.env_plot import EnvPlot
 
 
 def start_drawing(env: EnvState) -> None:

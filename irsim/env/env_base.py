@@ -16,9 +16,9 @@ from irsim.graphics.scene.style import Palette
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
 if TYPE_CHECKING:
+    from irsim.env.old.env_plot import EnvPlot
     from irsim.env.old.factory import EnvConfig, ObjectFactory
     from irsim.policies.catalog import PolicySource
-    from irsim.rendering.env_plot import EnvPlot
 
 __all__ = ["Env", "EnvBase"]
 
@@ -200,7 +200,7 @@ class Env(EnvState):
         return self.env_config.object_factory
 
     def _make_plot(self, attach: Any) -> EnvPlot:
-        from irsim.rendering.env_plot import EnvPlot
+        from irsim.env.old.env_plot import EnvPlot
 
         return EnvPlot(self, display=self.display, full=self.full, palette=self.palette_param, attach=attach)
 

@@ -11,10 +11,10 @@ from irsim.env.parameters import EnvParam, PathParam, WorldParam, WorldView
 if TYPE_CHECKING:
     from irsim.common.log import Logger
     from irsim.compat.objects.view import ScriptObject
+    from irsim.env.old.env_plot import EnvPlot
     from irsim.graphics.scene.style import Palette
     from irsim.gui import KeyboardControl, MouseControl
     from irsim.policies.policy import Policy
-    from irsim.rendering.env_plot import EnvPlot
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
     from irsim.simulation.simulation import Simulation
 

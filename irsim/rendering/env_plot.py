@@ -23,8 +23,8 @@ from irsim.graphics.figure.window import LiveCanvas, LiveFigure
 from irsim.graphics.scene.scene import Scene, region_extent
 from irsim.graphics.scene.style import STYLE_KEYS, Palette
 from irsim.objects.drawing.scene_builder import MODES, SceneBuilder
+from irsim.objects.sensors.user_drawings import UserDrawings
 from irsim.objects.views import views
-from irsim.rendering.plot_steps import PlotSteps, UserSensors
 from irsim.rendering.recording import Pictured
 from irsim.rendering.saving import Saving, saved_figure_options
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["EnvPlot"]
 
 
-class EnvPlot(PlotSteps):
+class EnvPlot:
     """Draws one environment.
 
     A picture always shows the state at the moment it is made; ``update`` only notes how to draw it. Artists are brought
@@ -76,7 +76,7 @@ class EnvPlot(PlotSteps):
         self._size = float(width), float(height)
         self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._has_picture)
         self._overlay = Overlay(self.palette)
-        self._user_sensors = UserSensors()
+        self._user_sensors = UserDrawings()
         self._figure: SceneFigure | None = None
         self._window: Window | None = None
         self._saving = Saving(self, self.saved_figure_kwargs.pop("format", None))
@@ -255,6 +255,11 @@ class EnvPlot(PlotSteps):
         if self._options.show_zones:
             self._builder.add_zones(scene)
         return self._without_hidden(scene)
+
+    def _without_hidden(self, scene: Scene) -> Scene:
+        for name in ("marks", "beams", "labels", "pictures", "grids") if self._hidden else ():
+            setattr(scene, name, [item for item in getattr(scene, name) if item.object not in self._hidden])
+        return scene
 
     def _title(self) -> str | None:
         if not self.show_title:

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from irsim.compat.paths import NAMES, SAME
+
 ROOT = Path(__file__).resolve().parents[2]
 MAX_BOXES = 14
 MAX_ARROWS = 64
@@ -156,6 +158,15 @@ def test_no_files_import_one_another_in_a_circle() -> None:
 def test_few_rooms_know_the_old_names() -> None:
     using = {room(module) for module in sources() for target, _ in imports(module) if room(target) == "compat"}
     assert using <= MAY_IMPORT_COMPAT
+
+
+def test_what_only_scripts_of_2_12_use_is_in_its_rooms() -> None:
+    """A module elsewhere that an old path leads to is used by today's code, not only by scripts."""
+    old = ("irsim.compat.", "irsim.env.old.")
+    homes = {home.partition(":")[0] for names in NAMES.values() for home in names.values()} | {*SAME.values()}
+    shared = {home for home in homes if home.startswith("irsim.") and not home.startswith(old)}
+    users = (module for module, path in sources().items() if path.name != "__init__.py" and not module.startswith(old))
+    assert shared - {target for module in users for target, _ in imports(module)} == set()
 
 
 def test_files_are_short() -> None:

@@ -1,68 +1,29 @@
-"""Methods of the picture that scripts call: the parts of a frame one by one, drawings of their own, the window."""
+"""The picture of an environment with all methods of IR-SIM 2.12: parts of a frame, drawings of scripts, the window."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-from matplotlib.axes import Axes
+from typing import Any
 
 from irsim.components.maps._grid import shades
 from irsim.graphics.figure import window
 from irsim.graphics.figure.layers import FogLayer, GridLayer
-from irsim.graphics.scene.scene import Fog, GridImage, Scene
+from irsim.graphics.scene.scene import Fog, GridImage
 from irsim.objects.drawing.scene_builder import MODES
-from irsim.objects.sensors.sensors import PythonSensor
 from irsim.objects.views import views
+from irsim.rendering import env_plot
 from irsim.simulation.fog import FOG_COLOR
 
-if TYPE_CHECKING:
-    from irsim.graphics.figure.figure import SceneFigure
-    from irsim.graphics.figure.overlay import Overlay
-    from irsim.graphics.figure.window import Window
-    from irsim.objects.view import ObjectView
-    from irsim.rendering.recording import Pictured
-
-__all__ = ["PlotSteps", "UserSensors"]
+__all__ = ["EnvPlot"]
 
 
-class PlotSteps:
-    """Part of :class:`irsim.rendering.env_plot.EnvPlot` with the methods that scripts call.
+class EnvPlot(env_plot.EnvPlot):
+    """The picture of an environment with the methods that scripts call.
 
     A figure follows its environment anyway, so most methods just bring the whole figure up to date. ``objects`` that
     do not belong to the environment are drawn by their own method ``plot``.
     """
-
-    env: Pictured
-    title: str | None
-    _hidden: set[int]
-    _overlay: Overlay
-    _display: bool
-    _figure: SceneFigure | None
-    _window: Window | None
-
-    if TYPE_CHECKING:
-
-        @property
-        def ax(self) -> Any:
-            """See :class:`irsim.rendering.env_plot.EnvPlot`."""
-
-        def update(self, mode: str = "dynamic", **overrides: Any) -> None:
-            """See :class:`irsim.rendering.env_plot.EnvPlot`."""
-
-        def save_animation(self, path: str | Path | None = None, **options: Any) -> Path | None:
-            """See :class:`irsim.rendering.env_plot.EnvPlot`."""
-
-        def made_figure(self) -> SceneFigure:
-            """See :class:`irsim.rendering.env_plot.EnvPlot`."""
-
-        def synced_figure(self) -> SceneFigure:
-            """See :class:`irsim.rendering.env_plot.EnvPlot`."""
-
-        def as_shown(self) -> AbstractContextManager[None]:
-            """See :class:`irsim.rendering.env_plot.EnvPlot`."""
 
     @property
     def x_range(self) -> list[float]:
@@ -124,11 +85,6 @@ class PlotSteps:
                 self._hidden.add(view.id)
                 view.plot_clear(all=True)
         self.synced_figure()
-
-    def _without_hidden(self, scene: Scene) -> Scene:
-        for name in ("marks", "beams", "labels", "pictures", "grids") if self._hidden else ():
-            setattr(scene, name, [item for item in getattr(scene, name) if item.object not in self._hidden])
-        return scene
 
     def step_world_plot(self) -> None:
         """Bring the fog and everything else up to date."""
@@ -238,35 +194,3 @@ class PlotSteps:
         self.pause(0.001)
         if self._window is not None:
             self._window.wait()
-
-
-class UserSensors:
-    """Lets the user-defined sensors of an environment draw into the axes of one figure."""
-
-    def __init__(self) -> None:
-        self._drawn: dict[int, PythonSensor] = {}
-
-    def show(self, ax: Axes, objects: Sequence[ObjectView]) -> None:
-        """Bring the drawings of the sensors up to date.
-
-        Args:
-            ax: Axes in world coordinates.
-            objects: Objects whose sensors are shown.
-        """
-        sensors = [sensor for view in objects for sensor in view.sensors if isinstance(sensor, PythonSensor)]
-        for sensor in [*self._drawn.values()]:
-            if sensor not in sensors:
-                del self._drawn[id(sensor)]
-                if hasattr(sensor.instance, "plot_clear"):
-                    sensor.instance.plot_clear()
-        for sensor in sensors:
-            if id(sensor) in self._drawn:
-                if hasattr(sensor.instance, "step_plot"):
-                    sensor.instance.step_plot()
-            elif hasattr(sensor.instance, "plot"):
-                self._drawn[id(sensor)] = sensor
-                sensor.instance.plot(ax, sensor.parent.state)
-
-    def forget(self) -> None:
-        """Forget which sensors have drawn, because the axes are empty again."""
-        self._drawn.clear()

@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
+from irsim.env.old.env_plot import EnvPlot
 from irsim.graphics.figure.figure3d import SceneFigure3D
 from irsim.graphics.figure.overlay import Overlay, coordinates
-from irsim.rendering.env_plot import EnvPlot
 
 __all__ = ["EnvPlot3D"]
 
@@ -57,7 +57,7 @@ class _Overlay3D(Overlay):
 
 
 class EnvPlot3D(EnvPlot):
-    """Draws one environment in 3-D; see :class:`irsim.rendering.env_plot.EnvPlot`. Grid maps and fog are not drawn.
+    """Draws one environment in 3-D; see :class:`irsim.env.old.env_plot.EnvPlot`. Grid maps and fog are not drawn.
 
     Args:
         env: The environment.
