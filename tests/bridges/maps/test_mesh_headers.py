@@ -181,7 +181,7 @@ def test_ply_headers(tmp_path, header, said) -> None:
     with pytest.raises(BridgeError, match=said):
         _headers.check_ply(file)
     file.write_bytes(b"ply\nformat ascii 1.0\n")
-    with pytest.raises(BridgeError, match="no end"):
+    with pytest.raises(BridgeError, match="no line 'end_header'"):
         _headers.check_ply(file)
 
 

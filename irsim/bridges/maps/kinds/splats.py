@@ -15,8 +15,9 @@ from irsim.bridges.maps.occupancy import cropped
 from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.sidecar import scene_transform
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Occupancy, unusable
+from irsim.bridges.ply import read_header
 from irsim.bridges.splats.occupancy import Plan, PlanOptions, find_floor, ground_plan, level_shares
-from irsim.bridges.splats.reading import read_header, read_splats
+from irsim.bridges.splats.reading import SPLATS_FIX, read_splats
 from irsim.bridges.splats.splats import Splats, moved
 from irsim.bridges.splats.upright import upward_of
 from irsim.common.arrays import Floats
@@ -96,7 +97,7 @@ def unpacked_splats(path: Path, limits: ImportLimits) -> Splats:
         ExtraError: The library that reads it is missing.
     """
     suffix = path.suffix.lower().lstrip(".")
-    if suffix == "ply" and read_header(path).element("chunk") is None:
+    if suffix == "ply" and read_header(path, SPLATS_FIX).element("chunk") is None:
         return read_splats(path)
     if suffix == "lcc":
         fix = "convert it: npx @playcanvas/splat-transform scene.lcc scene.ply"
