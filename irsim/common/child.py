@@ -42,8 +42,8 @@ __all__ = [
     "limit",
     "lines",
     "python",
-    "write_all",
     "write_line",
+    "write_to_pipe",
 ]
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
@@ -104,7 +104,7 @@ class Child:
     def send(self, line: bytes) -> bool:
         """Write a line, without its end, to standard input; False if the process does not read any more."""
         try:
-            write_all(self.input, line + b"\n")
+            write_to_pipe(self.input, line + b"\n")
         except (OSError, ValueError):  # it has ended, or its input was closed
             return False
         return True
@@ -190,7 +190,7 @@ def _close(pipe: IO[bytes]) -> None:
         pipe.close()
 
 
-def write_all(pipe: Writer, data: bytes) -> None:
+def write_to_pipe(pipe: Writer, data: bytes) -> None:
     """Write all of the data to a pipe without a buffer, which may take only the first bytes.
 
     Raises:
@@ -211,7 +211,7 @@ def answers() -> IO[bytes]:
 
 def write_line(pipe: Writer, message: Any) -> None:
     """Write a message as a line of JSON."""
-    write_all(pipe, json.dumps(message).encode() + b"\n")
+    write_to_pipe(pipe, json.dumps(message).encode() + b"\n")
 
 
 def lines() -> queue.SimpleQueue[bytes]:

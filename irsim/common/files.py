@@ -11,7 +11,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import TypeAlias
 
-from irsim.common.held import apart
+from irsim.common.held import elsewhere
 from irsim.common.text import clean
 from irsim.diagnostics.errors import CodedError
 
@@ -228,7 +228,7 @@ def replacing(path: Path, *, overwrite: bool = True) -> Iterator[Path]:
     make_folder_of(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
     try:
-        with _named(path, temporary), apart(temporary) as written:
+        with _named(path, temporary), elsewhere(temporary) as written:
             if written == temporary:
                 _try(written)
             yield written
@@ -281,7 +281,7 @@ def new_folder(target: Path) -> Iterator[Path]:
     make_folder_of(target)
     temporary = target.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
     try:
-        with _named(target, temporary), apart(temporary) as written:
+        with _named(target, temporary), elsewhere(temporary) as written:
             written.mkdir()
             yield written
         os.rename(temporary, target)

@@ -11,7 +11,7 @@ from irsim.common.arrays import Floats
 from irsim.common.text import clean, listed
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.learning.tasks.files import task_error
-from irsim.learning.tasks.scene import Scene
+from irsim.learning.tasks.scene import TaskScene
 from irsim.learning.tasks.task import QUANTITIES, Task, merged
 from irsim.scenario.resolve.resolved import DrawnQuantity
 from irsim.simulation.simulation import Simulation
@@ -44,7 +44,7 @@ class Draws:
         varies: Whether anything is drawn, at any level.
     """
 
-    def __init__(self, task: Task, scene: Scene, simulation: Simulation, learners: NDArray[np.int64]) -> None:
+    def __init__(self, task: Task, scene: TaskScene, simulation: Simulation, learners: NDArray[np.int64]) -> None:
         self._simulation, self._learners = simulation, learners
         drawn = [one for level in scene.levels for one in level.drawn]
         row = {record.id: index for index, record in enumerate(scene.scenario.objects)}
@@ -129,7 +129,7 @@ def observed_names(task: Task) -> list[str]:
     )
 
 
-def check_observed(task: Task, scene: Scene) -> None:
+def check_observed(task: Task, scene: TaskScene) -> None:
     """Refuse names of draws that do not exist, or that are not numbers.
 
     Raises:

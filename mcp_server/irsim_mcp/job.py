@@ -18,7 +18,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from irsim.common.child import answers, end_with_input, limit, write_all
+from irsim.common.child import answers, end_with_input, limit, write_to_pipe
 from irsim.common.held import current, hold_for_good, not_held
 from irsim.common.text import clean
 
@@ -45,7 +45,7 @@ def main() -> None:
     job["workspace"] = _enter(**job["workspace"])  # paths of scenarios, and in them, are relative to it
 
     def answer(text: str) -> None:
-        write_all(pipe, text.encode() + b"\n")
+        write_to_pipe(pipe, text.encode() + b"\n")
 
     try:
         result = _TASKS[job["task"]](job, _Progress(answer))

@@ -29,7 +29,7 @@ from mcp.types import (
     JSONRPCResponse,
 )
 
-from irsim.common.child import Writer, write_all
+from irsim.common.child import Writer, write_to_pipe
 from irsim_mcp.frames import MAX_FRAME, BadFrame, frame
 
 __all__ = ["standard_streams"]
@@ -160,7 +160,7 @@ class _Wire:
                 self._owed -= 1
 
     async def _put(self, data: bytes, answers: bool) -> None:
-        await self._writer.do(partial(write_all, self._target, data + b"\n"))
+        await self._writer.do(partial(write_to_pipe, self._target, data + b"\n"))
         if answers:
             self._owed -= 1
             self._last = time.monotonic()

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim.common.held import Folder, apart, hold, not_held
+from irsim.common.held import Folder, elsewhere, hold, not_held
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="descriptors of POSIX")
 
@@ -72,7 +72,7 @@ def test_pipes_and_second_names_are_refused(root: Path) -> None:
 
 def test_libraries_that_open_files_themselves_write_elsewhere(root: Path) -> None:
     target = root / "inner" / "b"
-    with hold(Folder(root)), apart(target) as place:
+    with hold(Folder(root)), elsewhere(target) as place:
         assert not place.is_relative_to(root)
         place.mkdir()
         (place / "c").write_text("c", encoding="utf-8")

@@ -15,7 +15,7 @@ from irsim_evals.cases.store import Instance, instance_of
 from irsim_evals.cli import app
 from irsim_evals.grader import programs
 from irsim_evals.grader.artefact import Answer
-from irsim_evals.grader.episode import Episode, run_episode
+from irsim_evals.grader.episode import GradedEpisode, run_episode
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.limited import preload
 from irsim_evals.grader.material import Material
@@ -104,7 +104,7 @@ def world(text: str, reply: str = "", **selectors: dict[str, Any]) -> Material:
     return Material(scenario=scenario, selectors=chosen, texts={"scenario.yaml": text}, reply=reply)
 
 
-def episode(material: Material, seconds: float) -> Episode:
+def episode(material: Material, seconds: float) -> GradedEpisode:
     assert material.scenario is not None
     return run_episode(material.scenario, 0, seconds)
 

@@ -12,7 +12,7 @@ import pytest
 import irsim
 import irsim._core as core
 from irsim.validation.feasibility.gaps import find_gaps
-from irsim.validation.feasibility.scenes import FAR, Scene
+from irsim.validation.feasibility.scenes import FAR, StartState
 from tests.validation.test_findings import DISC, box, codes, findings
 
 pytestmark = pytest.mark.one_python
@@ -158,7 +158,7 @@ def test_gaps_are_those_that_fine_cells_show(open_edge: bool) -> None:
         things = random_things(rng, low, high)
         if not open_edge:
             things.append(([core.Room(vertices=[[0, 0], [0, 10], [10, 10], [10, 0]])], [0.0, 0.0, 0.0]))
-        scene = Scene(seed=0, pose={}, goals={}, things=things, bounds=bounds)
+        scene = StartState(seed=0, pose={}, goals={}, things=things, bounds=bounds)
         n = 500
         clearance = core.Clearance(core.Terrain(FAR, things), ((0.0, 0.0), (10 / n, 10 / n), n, n))
         half = math.sqrt(0.5) * 10 / n

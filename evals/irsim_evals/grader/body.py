@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from irsim.objects.view import ObjectView
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
-__all__ = ["Body", "Box", "body_of"]
+__all__ = ["Box", "GradedBody", "body_of"]
 
 _STRAIGHT = 1e-6
 """Largest deviation [m] of an outline from a rectangle that counts as none."""
@@ -42,7 +42,7 @@ class Box:
 
 
 @dataclass(frozen=True)
-class Body:
+class GradedBody:
     """One object at the start of an episode (world frame, m, rad, s).
 
     Attributes:
@@ -145,7 +145,7 @@ class Body:
         return "line" if self.footprint.area == 0 else "compound"
 
 
-def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:
+def body_of(view: ObjectView, scenario: ResolvedScenario) -> GradedBody:
     """The body of an object."""
     record: Any = view.record
     kinematics = None if record.static or record.kinematics is None else str(record.kinematics.name)
@@ -155,7 +155,7 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:
     low, high = view.vel_min[:, 0].tolist(), view.vel_max[:, 0].tolist()
     footprint = view.geometry
     radius = view.radius if _is_disc(view) else None
-    return Body(
+    return GradedBody(
         index=view.index,
         record=record,
         static=record.static or kinematics is None,

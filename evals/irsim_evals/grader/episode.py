@@ -11,19 +11,19 @@ import numpy as np
 from irsim.navigation.clearances import clearance
 from irsim.simulation.events import Event, partner_of
 from irsim.simulation.trace import Trace, join_traces, next_rows, present_row
-from irsim_evals.grader.scene import Scene, open_scene
+from irsim_evals.grader.scene import GradedScene, open_scene
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["Episode", "run_episode"]
+__all__ = ["GradedEpisode", "run_episode"]
 
 _CHUNK_STEPS = 100
 """Steps between two looks at the explored share of a fog map."""
 
 
 @dataclass
-class Episode:
+class GradedEpisode:
     """A simulated episode.
 
     Attributes:
@@ -36,7 +36,7 @@ class Episode:
             ``ranges`` and ``velocities``.
     """
 
-    scene: Scene
+    scene: GradedScene
     seed: int
     trace: Trace
     events: list[Event]
@@ -81,7 +81,9 @@ class Episode:
         return step[:, 0] * np.cos(heading) + step[:, 1] * np.sin(heading)
 
 
-def run_episode(scenario: ResolvedScenario, seed: int, seconds: float, scan_times: tuple[float, ...] = ()) -> Episode:
+def run_episode(
+    scenario: ResolvedScenario, seed: int, seconds: float, scan_times: tuple[float, ...] = ()
+) -> GradedEpisode:
     """Simulate one episode to its end.
 
     Args:
@@ -106,10 +108,10 @@ def run_episode(scenario: ResolvedScenario, seed: int, seconds: float, scan_time
             explored.append((time, float(fog.explored_ratio)))
         if done == due and scan_times:
             scans[time] = _scans(scene)
-    return Episode(scene, seed, join_traces(parts), list(scene.env.events), explored, scans)
+    return GradedEpisode(scene, seed, join_traces(parts), list(scene.env.events), explored, scans)
 
 
-def _scans(scene: Scene) -> dict[str, list[dict[str, Any]]]:
+def _scans(scene: GradedScene) -> dict[str, list[dict[str, Any]]]:
     scans: dict[str, list[dict[str, Any]]] = {}
     for view in [*scene.env.robot_list, *scene.env.obstacle_list]:
         if view.sensors:

@@ -15,7 +15,7 @@ from typing import Any
 from irsim.diagnostics.errors import IrsimError
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer, find_scenario, rivals, scenarios_in
-from irsim_evals.grader.episode import Episode, run_episode
+from irsim_evals.grader.episode import GradedEpisode, run_episode
 from irsim_evals.grader.material import Material, with_speeds
 from irsim_evals.grader.outcome import NOT_REACHED, STAGES, Outcome, Stage, Verdict
 from irsim_evals.grader.predicates._base import Observation
@@ -191,7 +191,7 @@ def _episodes(plan: Any, material: Material, outcomes: list[Outcome]) -> None:
     seen: dict[str, list[Observation]] = {item.id: [] for item in plan.check}
     times = tuple(sorted({t for item in plan.check for t in item.predicate.scan_times()}))
     for seed in plan.seeds:
-        episode: Episode | None = None
+        episode: GradedEpisode | None = None
         why = ""
         try:
             step_time = float(material.scene(seed).world.step_time)

@@ -13,8 +13,8 @@ from irsim.scenario.checks import KEY_CODES
 from irsim.scenario.limits import Limits
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import Document, load_text
-from irsim_evals.grader.body import Body
-from irsim_evals.grader.scene import Scene, open_scene
+from irsim_evals.grader.body import GradedBody
+from irsim_evals.grader.scene import GradedScene, open_scene
 from irsim_evals.grader.selection import Selector, select
 
 if TYPE_CHECKING:
@@ -104,9 +104,9 @@ class Material:
     workplace: Path | None = None
     trusted_folder: Path | None = None
     beside: dict[str, Material] = field(default_factory=dict, repr=False)
-    _scenes: dict[int, Scene] = field(default_factory=dict, repr=False)
+    _scenes: dict[int, GradedScene] = field(default_factory=dict, repr=False)
 
-    def scene(self, seed: int) -> Scene:
+    def scene(self, seed: int) -> GradedScene:
         """The world with a seed at its start, built once.
 
         Raises:
@@ -165,7 +165,7 @@ class Material:
             self.beside[file] = made
         return self.beside[file]
 
-    def bodies(self, scene: Scene, name: str) -> list[Body]:
+    def bodies(self, scene: GradedScene, name: str) -> list[GradedBody]:
         """The bodies of a selection."""
         return select(scene, name, dict(self.selectors))
 

@@ -11,10 +11,10 @@ from typing import Annotated, Any
 from pydantic import AfterValidator
 
 from irsim.scenario.resolve.body_size import top_speed
-from irsim_evals.grader.body import Body
+from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.hues import hue_of
 from irsim_evals.grader.matching import Kind
-from irsim_evals.grader.scene import Scene
+from irsim_evals.grader.scene import GradedScene
 
 __all__ = ["PROPERTIES", "Property", "PropertyName", "value_of", "yaml_path"]
 
@@ -31,28 +31,28 @@ class Property:
 
     kind: Kind
     key: str
-    of: Callable[[Scene, Body], Any]
+    of: Callable[[GradedScene, GradedBody], Any]
 
 
-def _goal(component: int) -> Callable[[Scene, Body], Any]:
-    def of(_: Scene, body: Body) -> float | None:
+def _goal(component: int) -> Callable[[GradedScene, GradedBody], Any]:
+    def of(_: GradedScene, body: GradedBody) -> float | None:
         goal = body.goal
         return None if goal is None or len(goal) <= component else goal[component]
 
     return of
 
 
-def _goal_offset(component: int) -> Callable[[Scene, Body], Any]:
-    def of(_: Scene, body: Body) -> float | None:
+def _goal_offset(component: int) -> Callable[[GradedScene, GradedBody], Any]:
+    def of(_: GradedScene, body: GradedBody) -> float | None:
         return None if body.goal is None else body.goal[component] - body.pose[component]
 
     return of
 
 
-def _side(which: int) -> Callable[[Scene, Body], Any]:
+def _side(which: int) -> Callable[[GradedScene, GradedBody], Any]:
     """The longer (0) or shorter (1) side of a rectangular body."""
 
-    def of(_: Scene, body: Body) -> float | None:
+    def of(_: GradedScene, body: GradedBody) -> float | None:
         if body.box is None:
             return None
         return (body.box.length, body.box.width)[which]
@@ -60,61 +60,61 @@ def _side(which: int) -> Callable[[Scene, Body], Any]:
     return of
 
 
-def _axis(_: Scene, body: Body) -> float | None:
+def _axis(_: GradedScene, body: GradedBody) -> float | None:
     """Direction of the longer side of a rectangular body; None for squares and other shapes."""
     return None if body.box is None or body.shape == "square" else body.box.heading
 
 
-def _aspect(_: Scene, body: Body) -> float | None:
+def _aspect(_: GradedScene, body: GradedBody) -> float | None:
     """The longer side of a rectangular body divided by the shorter one; infinite for a line."""
     if body.box is None:
         return None
     return body.box.length / body.box.width if body.box.width > 0 else math.inf
 
 
-def _along(which: int) -> Callable[[Scene, Body], Any]:
+def _along(which: int) -> Callable[[GradedScene, GradedBody], Any]:
     """Extent of a body that is not a disc along (0) or across (1) its own heading."""
 
-    def of(_: Scene, body: Body) -> float | None:
+    def of(_: GradedScene, body: GradedBody) -> float | None:
         return None if body.radius is not None else float(body.extent[which])
 
     return of
 
 
-def _way(_: Scene, body: Body) -> float | None:
+def _way(_: GradedScene, body: GradedBody) -> float | None:
     """Straight distance from the start over all goals."""
     points = [body.pose[:2], *(goal[:2] for goal in body.goals)]
     return sum(math.dist(a, b) for a, b in itertools.pairwise(points)) if body.goals else None
 
 
-def _straight(_: Scene, body: Body) -> float | None:
+def _straight(_: GradedScene, body: GradedBody) -> float | None:
     return None if body.goal is None else math.dist(body.pose[:2], body.goal[:2])
 
 
-def _to_goal(_: Scene, body: Body) -> float | None:
+def _to_goal(_: GradedScene, body: GradedBody) -> float | None:
     """Direction from the start to the last goal."""
     goal = body.goal
     return None if goal is None else math.atan2(goal[1] - body.pose[1], goal[0] - body.pose[0])
 
 
-def _share(scene: Scene, point: Sequence[float], component: int) -> float:
+def _share(scene: GradedScene, point: Sequence[float], component: int) -> float:
     """A coordinate as a share of the extent of the world."""
     low, high = scene.bounds[component], scene.bounds[component + 2]
     return (point[component] - low) / (high - low)
 
 
-def _of_world(component: int) -> Callable[[Scene, Body], Any]:
+def _of_world(component: int) -> Callable[[GradedScene, GradedBody], Any]:
     return lambda scene, body: _share(scene, body.position, component)
 
 
-def _goal_of_world(component: int) -> Callable[[Scene, Body], Any]:
+def _goal_of_world(component: int) -> Callable[[GradedScene, GradedBody], Any]:
     return lambda scene, body: None if body.goal is None else _share(scene, body.goal, component)
 
 
-def _limit(kinematics: tuple[str, ...], component: int, sign: int) -> Callable[[Scene, Body], Any]:
+def _limit(kinematics: tuple[str, ...], component: int, sign: int) -> Callable[[GradedScene, GradedBody], Any]:
     """Greatest control of a component in one direction (1: forward, left; -1: backward, right)."""
 
-    def of(_: Scene, body: Body) -> float | None:
+    def of(_: GradedScene, body: GradedBody) -> float | None:
         values = body.limits.get("vel_max" if sign > 0 else "vel_min", [])
         if body.kinematics not in kinematics or len(values) <= component:
             return None
@@ -123,13 +123,13 @@ def _limit(kinematics: tuple[str, ...], component: int, sign: int) -> Callable[[
     return of
 
 
-def _local(_: Scene, body: Body) -> str | None:
+def _local(_: GradedScene, body: GradedBody) -> str | None:
     """Name of the behavior that drives a planning body from corner to corner."""
     local = body.options.get("local")
     return str(local["name"]) if isinstance(local, dict) and "name" in local else None
 
 
-def _turn(scene: Scene, body: Body, sign: int) -> float | None:
+def _turn(scene: GradedScene, body: GradedBody, sign: int) -> float | None:
     component = 1 if body.kinematics == "diff" else 2
     limit: float | None = _limit(("diff", "omni_angular"), component, sign)(scene, body)
     return limit
@@ -211,7 +211,7 @@ PropertyName = Annotated[str, AfterValidator(_known)]
 """Name of a property that there is."""
 
 
-def value_of(scene: Scene, body: Body, name: str) -> Any:
+def value_of(scene: GradedScene, body: GradedBody, name: str) -> Any:
     """The value of a property.
 
     Raises:
@@ -220,6 +220,6 @@ def value_of(scene: Scene, body: Body, name: str) -> Any:
     return PROPERTIES[name].of(scene, body)
 
 
-def yaml_path(body: Body, name: str) -> str:
+def yaml_path(body: GradedBody, name: str) -> str:
     """Where the value of a property is written: ``robot[0].shape``."""
     return f"{body.entry}.{PROPERTIES[name].key}"

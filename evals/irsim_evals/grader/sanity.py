@@ -10,13 +10,13 @@ import numpy as np
 import shapely
 
 from irsim.scenario.resolve.body_size import top_speed
-from irsim_evals.grader.body import Body
+from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.outcome import Mark, Outcome
 from irsim_evals.grader.predicates._base import summary
 
 if TYPE_CHECKING:
-    from irsim_evals.grader.episode import Episode
-    from irsim_evals.grader.scene import Scene
+    from irsim_evals.grader.episode import GradedEpisode
+    from irsim_evals.grader.scene import GradedScene
 
 __all__ = ["check_goals", "check_moves", "check_scene", "overlaps"]
 
@@ -30,9 +30,9 @@ _MAX_PAIRS = 200
 """Number of overlapping pairs that are collected."""
 
 
-def overlaps(scene: Scene) -> list[tuple[Body, str]]:
+def overlaps(scene: GradedScene) -> list[tuple[GradedBody, str]]:
     """Bodies that overlap something they collide with, with the name of the other, at the start."""
-    pairs: list[tuple[Body, str]] = []
+    pairs: list[tuple[GradedBody, str]] = []
     bodies = [body for body in scene.bodies if not body.passable]
     footprints = np.array([body.footprint for body in bodies], dtype=object)
     for i, j in shapely.STRtree(footprints).query(footprints, predicate="intersects").T.tolist():
@@ -50,7 +50,7 @@ def overlaps(scene: Scene) -> list[tuple[Body, str]]:
     return pairs
 
 
-def _depth(a: Body, b: Body) -> float:
+def _depth(a: GradedBody, b: GradedBody) -> float:
     """How deep two footprints reach into one another [m], at least."""
     if a.radius is not None and b.radius is not None:
         return a.radius + b.radius - math.dist(a.position, b.position)
@@ -59,7 +59,7 @@ def _depth(a: Body, b: Body) -> float:
     return 0.0
 
 
-def check_scene(scene: Scene, *, overlap: bool = True) -> list[Outcome]:
+def check_scene(scene: GradedScene, *, overlap: bool = True) -> list[Outcome]:
     """Everything lies in the world, may stand still, and nothing overlaps."""
     x0, y0, x1, y1 = scene.bounds
     moving = [body for body in scene.bodies if not body.static or body.role == "robot"]
@@ -87,7 +87,7 @@ def check_scene(scene: Scene, *, overlap: bool = True) -> list[Outcome]:
     return outcomes
 
 
-def check_goals(scene: Scene) -> Outcome:
+def check_goals(scene: GradedScene) -> Outcome:
     """Goals mean something: they count as reached only near them, and some robot has time enough for its way."""
     limit = scene.world.time_limit
     bodies = [b for b in scene.bodies if not b.static and b.behavior is not None and b.goals and not b.record.wander]
@@ -110,7 +110,7 @@ def check_goals(scene: Scene) -> Outcome:
     return _outcome("goals-count", expected, odd, "so it is", key, scene.seed, [])
 
 
-def check_moves(episode: Episode) -> Outcome:
+def check_moves(episode: GradedEpisode) -> Outcome:
     """Every body with a goal and a behavior moves, unless it is already there."""
     still = []
     for body in episode.scene.bodies:
@@ -127,7 +127,7 @@ def check_moves(episode: Episode) -> Outcome:
 def _outcome(
     name: str,
     expected: str,
-    odd: Sequence[tuple[Body, Any]],
+    odd: Sequence[tuple[GradedBody, Any]],
     right: str,
     key: str,
     seed: int,

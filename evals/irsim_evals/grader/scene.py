@@ -14,12 +14,12 @@ import irsim._core as core
 from irsim.common.outline import outline
 from irsim.env import Env
 from irsim.validation.feasibility.scenes import FAR
-from irsim_evals.grader.body import Body, body_of
+from irsim_evals.grader.body import GradedBody, body_of
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["Scene", "open_scene"]
+__all__ = ["GradedScene", "open_scene"]
 
 Point = tuple[float, float]
 _MAX_CELLS = 150_000
@@ -31,7 +31,7 @@ _HALF_DIAGONAL = math.sqrt(0.5)
 
 
 @dataclass
-class Scene:
+class GradedScene:
     """One world at its start.
 
     Attributes:
@@ -42,7 +42,7 @@ class Scene:
 
     seed: int
     env: Env
-    bodies: list[Body]
+    bodies: list[GradedBody]
     _paths: dict[Any, Any] = field(default_factory=dict, repr=False)
 
     @property
@@ -57,12 +57,12 @@ class Scene:
         return float(x0), float(y0), float(x1), float(y1)
 
     @property
-    def robots(self) -> list[Body]:
+    def robots(self) -> list[GradedBody]:
         """Bodies with the role of a robot."""
         return [body for body in self.bodies if body.role == "robot"]
 
     @property
-    def solids(self) -> list[Body]:
+    def solids(self) -> list[GradedBody]:
         """Bodies that never move and that others cannot pass: obstacles which nothing drives stand still, too."""
         return [body for body in self.bodies if not body.passable and (body.static or _stands(body))]
 
@@ -144,11 +144,11 @@ class Scene:
         return self._paths[key], _HALF_DIAGONAL * max(width / nx, height / ny)
 
 
-def _stands(body: Body) -> bool:
+def _stands(body: GradedBody) -> bool:
     return body.role == "obstacle" and body.behavior is None
 
 
-def open_scene(scenario: ResolvedScenario, seed: int) -> Scene:
+def open_scene(scenario: ResolvedScenario, seed: int) -> GradedScene:
     """Build one world of a scenario.
 
     Raises:
@@ -156,4 +156,4 @@ def open_scene(scenario: ResolvedScenario, seed: int) -> Scene:
     """
     env = Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR")
     views = sorted([*env.robot_list, *env.obstacle_list], key=lambda view: view.index)
-    return Scene(seed, env, [body_of(view, env.scenario) for view in views if not view.record.is_terrain])
+    return GradedScene(seed, env, [body_of(view, env.scenario) for view in views if not view.record.is_terrain])

@@ -7,10 +7,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 
-from irsim_evals.grader.body import Body
+from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.matching import Match, Quantity, matches
 from irsim_evals.grader.properties import PROPERTIES, value_of
-from irsim_evals.grader.scene import Scene
+from irsim_evals.grader.scene import GradedScene
 
 __all__ = ["BUILT_IN", "Selector", "select"]
 
@@ -62,7 +62,7 @@ BUILT_IN: dict[str, Selector] = {
 """Selections that every case has."""
 
 
-def select(scene: Scene, name: str, selectors: dict[str, Selector]) -> list[Body]:
+def select(scene: GradedScene, name: str, selectors: dict[str, Selector]) -> list[GradedBody]:
     """The bodies of a selection in the order of the file.
 
     Raises:
@@ -72,7 +72,7 @@ def select(scene: Scene, name: str, selectors: dict[str, Selector]) -> list[Body
     return [body for body in scene.bodies if _meets(scene, body, selector, selectors)]
 
 
-def _meets(scene: Scene, body: Body, selector: Selector, selectors: dict[str, Selector]) -> bool:
+def _meets(scene: GradedScene, body: GradedBody, selector: Selector, selectors: dict[str, Selector]) -> bool:
     def belongs(name: str) -> bool:
         return _meets(scene, body, selectors.get(name) or BUILT_IN[name], selectors)
 
@@ -99,11 +99,11 @@ def _meets(scene: Scene, body: Body, selector: Selector, selectors: dict[str, Se
     return not selector.any_of or any(_meets(scene, body, item, selectors) for item in selector.any_of)
 
 
-def _is_named(body: Body, pattern: str) -> bool:
+def _is_named(body: GradedBody, pattern: str) -> bool:
     texts = (body.name, body.record.group_name, *body.record.tags)
     return any(re.search(pattern, text, re.IGNORECASE) for text in texts)
 
 
-def _is_inside(body: Body, region: tuple[float, float, float, float]) -> bool:
+def _is_inside(body: GradedBody, region: tuple[float, float, float, float]) -> bool:
     x, y = body.position
     return region[0] <= x <= region[2] and region[1] <= y <= region[3]

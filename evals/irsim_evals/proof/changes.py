@@ -9,8 +9,8 @@ from typing import Any
 import shapely
 
 from irsim_evals.cases.model import Case, Pin
-from irsim_evals.grader.body import Body
-from irsim_evals.grader.scene import Scene
+from irsim_evals.grader.body import GradedBody
+from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.selection import select
 
 __all__ = ["FACTS", "GROUPS", "WORLD_FACTS", "changed_facts", "touches"]
@@ -36,7 +36,7 @@ _FULL_TURN = 6.2
 """Opening angle [rad] of a sensor from which on it sees all round."""
 
 
-def changed_facts(before: Scene, after: Scene) -> set[tuple[str, str]]:
+def changed_facts(before: GradedScene, after: GradedScene) -> set[tuple[str, str]]:
     """(name of a body of the first world, kind of fact) pairs that differ; ``world`` stands for the world itself.
 
     A body without a counterpart has changed its ``count``; one that is only in the second world has a ``+`` before its
@@ -61,13 +61,13 @@ def changed_facts(before: Scene, after: Scene) -> set[tuple[str, str]]:
     return differences
 
 
-def _drawn(scene: Scene) -> set[int]:
+def _drawn(scene: GradedScene) -> set[int]:
     """Rows of the bodies whose places are drawn anew with each seed."""
     return {row for placement in scene.env.scenario.placements for row in placement.objects}
 
 
 def touches(
-    case: Case, scenes: tuple[Scene, Scene], changed: set[tuple[str, str]], pins: list[Pin]
+    case: Case, scenes: tuple[GradedScene, GradedScene], changed: set[tuple[str, str]], pins: list[Pin]
 ) -> set[tuple[str, str]]:
     """The changes that one of the pins names.
 
@@ -92,12 +92,12 @@ def touches(
     return touched
 
 
-def _matched(first: list[Body], second: list[Body]) -> list[tuple[Body | None, Body | None]]:
+def _matched(first: list[GradedBody], second: list[GradedBody]) -> list[tuple[GradedBody | None, GradedBody | None]]:
     """Bodies in pairs: in the order of the files if that fits, else by place and name, the surest pairs first."""
     if len(first) == len(second) and all(a.role == b.role for a, b in zip(first, second, strict=True)):
         return list(zip(first, second, strict=True))
-    right, pairs = list(second), dict[int, Body]()
-    tests: list[Callable[[Body, Body], bool]] = [
+    right, pairs = list(second), dict[int, GradedBody]()
+    tests: list[Callable[[GradedBody, GradedBody], bool]] = [
         lambda a, b: a.name == b.name and math.dist(a.position, b.position) <= _SAME,
         lambda a, b: math.dist(a.position, b.position) <= _SAME,
         lambda a, b: a.name == b.name and a.role == b.role,
@@ -112,7 +112,7 @@ def _matched(first: list[Body], second: list[Body]) -> list[tuple[Body | None, B
     return [*((body, pairs.get(number)) for number, body in enumerate(first)), *((None, other) for other in right)]
 
 
-def _of_world(scene: Scene, kind: str) -> Any:
+def _of_world(scene: GradedScene, kind: str) -> Any:
     world = scene.world
     if kind == "size":
         return [world.width, world.height]
@@ -128,7 +128,7 @@ def _of_world(scene: Scene, kind: str) -> Any:
     return None if options is None else str(options)
 
 
-def _of_body(body: Body, kind: str) -> Any:
+def _of_body(body: GradedBody, kind: str) -> Any:
     if kind == "size":
         return [body.radius] if body.radius is not None else sorted(body.extent)
     if kind == "position":
@@ -164,7 +164,7 @@ def _of_body(body: Body, kind: str) -> Any:
     return getattr(body, kind)
 
 
-def _heading(body: Body) -> list[float]:
+def _heading(body: GradedBody) -> list[float]:
     """Cosine and sine of the heading; of a fixed rectangle, of the multiple that a turn into itself does not change."""
     times, heading = 1, body.pose[2]
     if body.static and body.role == "obstacle" and body.box is not None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from irsim_evals.grader.scene import Scene
+from irsim_evals.grader.scene import GradedScene
 
 __all__ = [
     "OPERATORS", "REWRITES", "Change", "Data", "Mutant", "component", "dump", "each_entry", "entries", "items_of",
@@ -20,7 +20,7 @@ Data = dict[str, Any]
 Change = Iterator[tuple[str, Data]]
 Operator = Callable[[Data], Change]
 OPERATORS: dict[str, Operator] = {}
-Rewrite = Callable[[str, Data, Scene], str | None]
+Rewrite = Callable[[str, Data, GradedScene], str | None]
 REWRITES: dict[str, Rewrite] = {}
 _DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 """The one in C is ten times as fast; some installations lack it."""

@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from irsim_evals.cases.model import Case
-from irsim_evals.grader.scene import Scene
+from irsim_evals.grader.scene import GradedScene
 from irsim_evals.proof import rewrites_of_layout  # it registers its rewrites when it is imported
 from irsim_evals.proof.operators import REWRITES, Data, dump, entries, plain, rewrite
 
@@ -25,7 +25,7 @@ _NUMBER = re.compile(r"(?<![\w.#\"'-])(-?\d+(?:\.\d+)?)(?![\w.:\"'])")
 _KEY = re.compile(r"(?<![\w\"'])([a-z_]+): ")
 
 
-def rewrites_of(case: Case, name: str, text: str, scene: Scene) -> Iterator[tuple[str, str]]:
+def rewrites_of(case: Case, name: str, text: str, scene: GradedScene) -> Iterator[tuple[str, str]]:
     """Name and text of each rewrite that applies to a scenario.
 
     Args:
@@ -102,19 +102,19 @@ def _code(line: str, change: Callable[[str], str]) -> str:
 
 
 @rewrite
-def flow_style(text: str, data: Data, scene: Scene) -> str | None:
+def flow_style(text: str, data: Data, scene: GradedScene) -> str | None:
     """Everything on as few lines as possible."""
     return dump(data, default_flow_style=True, width=10_000)
 
 
 @rewrite
-def block_style(text: str, data: Data, scene: Scene) -> str | None:
+def block_style(text: str, data: Data, scene: GradedScene) -> str | None:
     """Every key on its own line."""
     return dump(data, default_flow_style=False)
 
 
 @rewrite
-def keys_reversed(text: str, data: Data, scene: Scene) -> str | None:
+def keys_reversed(text: str, data: Data, scene: GradedScene) -> str | None:
     """Keys in the opposite order, at every level."""
 
     def turned(value: Any) -> Any:
@@ -126,7 +126,7 @@ def keys_reversed(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def comments(text: str, data: Data, scene: Scene) -> str | None:
+def comments(text: str, data: Data, scene: GradedScene) -> str | None:
     """With comments."""
     return "# a scenario\n" + "".join(
         f"{line}  # so it is\n" if line.endswith("}") else f"{line}\n" for line in text.splitlines()
@@ -134,7 +134,7 @@ def comments(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def list_or_mapping(text: str, data: Data, scene: Scene) -> str | None:
+def list_or_mapping(text: str, data: Data, scene: GradedScene) -> str | None:
     """A single entry without the list around it, or with one."""
     changed = False
     for section in ("robot", "obstacle"):
@@ -147,7 +147,7 @@ def list_or_mapping(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def explicit_defaults(text: str, data: Data, scene: Scene) -> str | None:
+def explicit_defaults(text: str, data: Data, scene: GradedScene) -> str | None:
     """Keys with their default values written out."""
     world = data.setdefault("world", {})
     for key in ("step_time", "sample_time", "control_mode", "collision_mode"):
@@ -160,7 +160,7 @@ def explicit_defaults(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def anchors(text: str, data: Data, scene: Scene) -> str | None:
+def anchors(text: str, data: Data, scene: GradedScene) -> str | None:
     """Equal mappings written once, with anchors and aliases."""
     known: dict[str, Any] = {}
 
@@ -175,7 +175,7 @@ def anchors(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def numbers_otherwise(text: str, data: Data, scene: Scene) -> str | None:
+def numbers_otherwise(text: str, data: Data, scene: GradedScene) -> str | None:
     """Whole numbers with a decimal point, others in powers of ten."""
 
     class Odd(yaml.SafeDumper):
@@ -189,7 +189,7 @@ def numbers_otherwise(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def entries_renamed(text: str, data: Data, scene: Scene) -> str | None:
+def entries_renamed(text: str, data: Data, scene: GradedScene) -> str | None:
     """Descriptive names where there were none."""
     changed = False
     for number, (section, _, entry) in enumerate(entries(data)):
@@ -199,7 +199,7 @@ def entries_renamed(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def sections_swapped(text: str, data: Data, scene: Scene) -> str | None:
+def sections_swapped(text: str, data: Data, scene: GradedScene) -> str | None:
     """Obstacles and robots before the world."""
     return dump(
         {
@@ -212,7 +212,7 @@ def sections_swapped(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def sensor_by_type(text: str, data: Data, scene: Scene) -> str | None:
+def sensor_by_type(text: str, data: Data, scene: GradedScene) -> str | None:
     """``type`` instead of ``name`` for sensors."""
     changed = False
     for *_, entry in entries(data):
@@ -224,6 +224,6 @@ def sensor_by_type(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def wrapped(text: str, data: Data, scene: Scene) -> str | None:
+def wrapped(text: str, data: Data, scene: GradedScene) -> str | None:
     """Behind a marker of the document, with blank lines."""
     return "---\n\n" + text.replace("\n", "\n\n") + "\n"

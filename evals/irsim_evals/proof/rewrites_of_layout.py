@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from irsim_evals.grader.scene import Scene
+from irsim_evals.grader.scene import GradedScene
 from irsim_evals.proof.operators import Data, dump, entries, rewrite
 
 
 @rewrite
-def one_entry_each(text: str, data: Data, scene: Scene) -> str | None:
+def one_entry_each(text: str, data: Data, scene: GradedScene) -> str | None:
     """Groups written out: one entry for each object, with its own pose and goal."""
     if scene.env.scenario.placements or not any(entry.get("number", 1) > 1 for *_, entry in entries(data)):
         return None
@@ -54,7 +54,7 @@ def _rectangles(data: Data, change: Callable[[Data, Data], None]) -> str | None:
 
 
 @rewrite
-def rectangles_as_polygons(text: str, data: Data, scene: Scene) -> str | None:
+def rectangles_as_polygons(text: str, data: Data, scene: GradedScene) -> str | None:
     """Rectangular obstacles as polygons with four corners in the world frame."""
 
     def change(entry: Data, shape: Data) -> None:
@@ -73,7 +73,7 @@ def rectangles_as_polygons(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def rectangles_turned(text: str, data: Data, scene: Scene) -> str | None:
+def rectangles_turned(text: str, data: Data, scene: GradedScene) -> str | None:
     """Rectangular obstacles a quarter turn further, with length and width exchanged."""
 
     def change(entry: Data, shape: Data) -> None:
@@ -85,7 +85,7 @@ def rectangles_turned(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def slightly_off(text: str, data: Data, scene: Scene) -> str | None:
+def slightly_off(text: str, data: Data, scene: GradedScene) -> str | None:
     """Positions of robots a tenth of a millimetre off."""
     changed = False
     for section, _, entry in entries(data):
@@ -96,7 +96,7 @@ def slightly_off(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def obstacles_in_reverse(text: str, data: Data, scene: Scene) -> str | None:
+def obstacles_in_reverse(text: str, data: Data, scene: GradedScene) -> str | None:
     """Obstacles in the opposite order."""
     given = data.get("obstacle")
     if not isinstance(given, list) or len(given) < 2 or scene.env.scenario.placements:
@@ -106,7 +106,7 @@ def obstacles_in_reverse(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def polygons_as_rectangles(text: str, data: Data, scene: Scene) -> str | None:
+def polygons_as_rectangles(text: str, data: Data, scene: GradedScene) -> str | None:
     """Polygons with four right angles as rectangles."""
     if scene.env.scenario.placements or len(scene.bodies) != sum(1 for _ in entries(data)):
         return None
@@ -124,7 +124,7 @@ def polygons_as_rectangles(text: str, data: Data, scene: Scene) -> str | None:
 
 
 @rewrite
-def entries_as_groups(text: str, data: Data, scene: Scene) -> str | None:
+def entries_as_groups(text: str, data: Data, scene: GradedScene) -> str | None:
     """Static obstacles that differ only in their pose as one group with a list of poses."""
     groups: dict[str, list[Data]] = {}
     for section, _, entry in entries(data):
@@ -145,7 +145,7 @@ def entries_as_groups(text: str, data: Data, scene: Scene) -> str | None:
     return dump(data)
 
 
-def _mirrored(data: Data, scene: Scene, axis: int) -> str | None:
+def _mirrored(data: Data, scene: GradedScene, axis: int) -> str | None:
     """Everything mirrored about the middle of the world, along x (0) or y (1)."""
     low, high = scene.bounds[axis], scene.bounds[axis + 2]
     if scene.env.scenario.placements or scene.world.obstacle_map is not None:
@@ -177,11 +177,11 @@ def _mirrored(data: Data, scene: Scene, axis: int) -> str | None:
     return dump(data)
 
 
-def mirrored_left_right(text: str, data: Data, scene: Scene) -> str | None:
+def mirrored_left_right(text: str, data: Data, scene: GradedScene) -> str | None:
     """Left and right exchanged, for cases that leave it free."""
     return _mirrored(data, scene, 0)
 
 
-def mirrored_up_down(text: str, data: Data, scene: Scene) -> str | None:
+def mirrored_up_down(text: str, data: Data, scene: GradedScene) -> str | None:
     """Up and down exchanged, for cases that leave it free."""
     return _mirrored(data, scene, 1)

@@ -22,7 +22,7 @@ from irsim.scenario.yaml.document import load_text
 from irsim_evals.cases.store import Instance, case_of, golds_of
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.material import LIMITS, write_files
-from irsim_evals.grader.scene import Scene, open_scene
+from irsim_evals.grader.scene import GradedScene, open_scene
 from irsim_evals.proof.changes import changed_facts, touches
 from irsim_evals.proof.mutants import mutants_of, mutants_of_answer, mutants_of_text
 from irsim_evals.proof.operators import Data, dump
@@ -84,12 +84,12 @@ def kind_of(trial: Trial) -> Kind | None:
 
 
 @functools.lru_cache(maxsize=4)
-def scene_of(text: str, blobs: tuple[tuple[str, bytes], ...], seed: int) -> Scene | None:
+def scene_of(text: str, blobs: tuple[tuple[str, bytes], ...], seed: int) -> GradedScene | None:
     """The world of a gold, which is the original of many mutants in a row; None if it cannot be built."""
     return _build(text, dict(blobs), seed)
 
 
-def _build(text: str, blobs: Mapping[str, bytes], seed: int) -> Scene | None:
+def _build(text: str, blobs: Mapping[str, bytes], seed: int) -> GradedScene | None:
     """The world of a scenario, read without the reading of the grader, which may be wrong; None if that fails."""
     with tempfile.TemporaryDirectory() as folder:
         write_files(Path(folder), {}, blobs)

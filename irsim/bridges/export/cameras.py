@@ -11,7 +11,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.frames import FrameName, camera_pose
 from irsim.bridges.maps.sidecar import MapSidecar, read_sidecar, scene_transform, sidecar_path
 from irsim.common.arrays import Floats
@@ -24,10 +24,10 @@ from irsim.scenario.limits import Limits
 from irsim.scenario.locate import why_outside
 
 __all__ = [
+    "CameraFrame",
     "CameraOptions",
     "CameraPath",
     "PoseOptions",
-    "Scene",
     "camera_paths",
     "camera_to_world",
     "picture_names",
@@ -68,7 +68,7 @@ class CameraOptions(PoseOptions):
 
 
 @dataclass(frozen=True)
-class Scene:
+class CameraFrame:
     """The world in which the cameras are.
 
     Attributes:
@@ -104,7 +104,7 @@ class CameraPath:
     pose: Floats
 
 
-def scene_of(run: Run, options: PoseOptions, limits: Limits | None, default: str) -> Scene:
+def scene_of(run: Run, options: PoseOptions, limits: Limits | None, default: str) -> CameraFrame:
     """The world of the cameras: the one that the map of the scenario was imported from, if there is one.
 
     Args:
@@ -121,7 +121,7 @@ def scene_of(run: Run, options: PoseOptions, limits: Limits | None, default: str
         if options.sidecar is not None:
             what = "both frame and sidecar are given"
             raise RunError("bad-argument", what, "give one of them: the sidecar says the frame", where="options")
-        return Scene(scene_transform(options.frame), options.frame)
+        return CameraFrame(scene_transform(options.frame), options.frame)
     if options.sidecar is not None:
         if limits is not None and limits.root is not None:
             wrong = why_outside(options.sidecar, Path(limits.root))
@@ -135,8 +135,8 @@ def scene_of(run: Run, options: PoseOptions, limits: Limits | None, default: str
         result = run_sidecar(run, limits)
     if result is None:
         note = f"the map of the run has no sidecar: cameras are in the frame {default}, whose floor is at height 0"
-        return Scene(scene_transform(default), default, (note,))
-    return Scene(result.T_scene_from_irsim, result.frame)
+        return CameraFrame(scene_transform(default), default, (note,))
+    return CameraFrame(result.T_scene_from_irsim, result.frame)
 
 
 def run_sidecar(run: Run, limits: Limits | None = None) -> MapSidecar | None:
@@ -165,7 +165,7 @@ def run_sidecar(run: Run, limits: Limits | None = None) -> MapSidecar | None:
     return None
 
 
-def camera_paths(episode: Episode, every: int) -> list[CameraPath]:
+def camera_paths(episode: ExportedEpisode, every: int) -> list[CameraPath]:
     """The chosen objects of a run as carriers of cameras, each in the steps in which it is in the world.
 
     Raises:
@@ -193,7 +193,7 @@ def camera_paths(episode: Episode, every: int) -> list[CameraPath]:
     return result
 
 
-def camera_to_world(path: CameraPath, axes: str, height: float, scene: Scene) -> Floats:
+def camera_to_world(path: CameraPath, axes: str, height: float, scene: CameraFrame) -> Floats:
     """(T, 4, 4) rigid camera-to-world matrices in the scene; positions are in its unit of length.
 
     Args:

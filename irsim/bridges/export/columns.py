@@ -9,7 +9,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.bridges.export.episode import Block, Episode
+from irsim.bridges.export.episode import Block, ExportedEpisode
 
 __all__ = ["Column", "Ranges", "Words", "columns_of", "table_parts"]
 
@@ -73,7 +73,7 @@ _COLUMNS = (
 )
 
 
-def columns_of(episodes: Sequence[Episode]) -> list[Column]:
+def columns_of(episodes: Sequence[ExportedEpisode]) -> list[Column]:
     """The columns of a table of some episodes."""
     controls = [
         Column(
@@ -94,7 +94,7 @@ def columns_of(episodes: Sequence[Episode]) -> list[Column]:
     return [*_COLUMNS[:before], *controls, *_COLUMNS[before:], *ranges]
 
 
-def table_parts(episode: Episode, columns: Sequence[Column]) -> Iterator[dict[str, Cells]]:
+def table_parts(episode: ExportedEpisode, columns: Sequence[Column]) -> Iterator[dict[str, Cells]]:
     """Yield the rows of an episode in parts: the cells of each column, step by step, in each step object by object.
 
     NaN stands for velocities at the start, goals of objects without one, and controls that only other drives have.
@@ -103,7 +103,7 @@ def table_parts(episode: Episode, columns: Sequence[Column]) -> Iterator[dict[st
         yield _cells(episode, block, columns)
 
 
-def _cells(episode: Episode, block: Block, columns: Sequence[Column]) -> dict[str, Cells]:
+def _cells(episode: ExportedEpisode, block: Block, columns: Sequence[Column]) -> dict[str, Cells]:
     trace, actors = block.trace, episode.actors
     steps, count = len(trace), len(actors)
     roles = ("robot", "obstacle")
@@ -136,7 +136,7 @@ def _cells(episode: Episode, block: Block, columns: Sequence[Column]) -> dict[st
     return {column.name: cells[column.name] for column in columns}
 
 
-def _control(episode: Episode, block: Block, number: int) -> NDArray[np.float64]:
+def _control(episode: ExportedEpisode, block: Block, number: int) -> NDArray[np.float64]:
     """A control of all actors; NaN for actors that have fewer controls, and before the first step."""
     has = np.array([number < len(actor.controls) for actor in episode.actors])
     values = np.where(has, block.trace.control[:, :, number] if number < 3 else np.nan, np.nan)
@@ -144,7 +144,7 @@ def _control(episode: Episode, block: Block, number: int) -> NDArray[np.float64]
     return values.ravel()
 
 
-def _ranges(episode: Episode, block: Block, number: int) -> Ranges:
+def _ranges(episode: ExportedEpisode, block: Block, number: int) -> Ranges:
     """Scans of one lidar of each actor."""
     steps = len(block.trace)
     lidars = [lidar for lidar in episode.lidars if lidar.number == number]
@@ -157,7 +157,7 @@ def _ranges(episode: Episode, block: Block, number: int) -> Ranges:
     return Ranges(values, lengths.ravel())
 
 
-def _distinct(episodes: Sequence[Episode], number: int, what: int) -> str:
+def _distinct(episodes: Sequence[ExportedEpisode], number: int, what: int) -> str:
     """Names or units of one control of all drives, such as ``m/s`` or ``rad/s (diff), m/s (omni)``."""
     drives: dict[str, list[str]] = {}
     for episode in episodes:

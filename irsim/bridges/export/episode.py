@@ -21,7 +21,7 @@ from irsim.scenario.limits import Limits
 from irsim.simulation.events import BETWEEN_STEPS
 from irsim.simulation.trace import Trace
 
-__all__ = ["CHOICES", "Actor", "Block", "Episode", "Lidar", "open_episode"]
+__all__ = ["CHOICES", "Actor", "Block", "ExportedEpisode", "Lidar", "open_episode"]
 
 CHOICES = ("movers", "robots", "people", "all")
 """Words that choose objects: robots and obstacles that can move, robots, obstacles that can move, or all objects."""
@@ -148,7 +148,7 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Episode:
+class ExportedEpisode:
     """One run, as far as it is exported.
 
     Attributes:
@@ -281,7 +281,7 @@ def open_episode(
     progress: Callable[[int], None] = lambda rows: None,
     options: Options | None = None,
     none: bool = False,
-) -> Episode:
+) -> ExportedEpisode:
     """A run with the objects to export.
 
     Args:
@@ -312,7 +312,7 @@ def open_episode(
             what, fix = f"run {run.id} has no objects", "export a run with robots or obstacles"
         raise RunError("bad-argument", what, fix, where="objects")
     actors = tuple(Actor(index, run.names[index], facts[index]) for index in chosen)
-    return Episode(run, actors, with_ranges, limits, progress, options)
+    return ExportedEpisode(run, actors, with_ranges, limits, progress, options)
 
 
 def _is_chosen(facts: dict[str, Any], word: str) -> bool:

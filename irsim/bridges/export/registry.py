@@ -11,7 +11,7 @@ from typing import Any, TypeAlias, TypeVar, overload
 
 from pydantic import ValidationError
 
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.common.lazy import module_names
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
@@ -57,7 +57,7 @@ def chosen_options(model: type[Options] | None, given: Mapping[str, Any], owner:
 
 
 _PACKAGE = "irsim.bridges.export.formats"
-Writer: TypeAlias = Callable[[Sequence[Episode], Path, str], list[str]]
+Writer: TypeAlias = Callable[[Sequence[ExportedEpisode], Path, str], list[str]]
 """Writes episodes to a path where nothing is yet, and returns notes on what it left out. The last argument is the name
 that the file or folder gets when it is complete."""
 

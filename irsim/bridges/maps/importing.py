@@ -20,7 +20,7 @@ from irsim.bridges.maps.source import (
     Kind,
     Occupancy,
     Outlines,
-    Scene,
+    SceneTriangles,
     find_kind,
     known_free,
     unusable,
@@ -185,7 +185,7 @@ def read_occupancy(
     source = {"file": path.name, "kind": kind.name, "bytes": size, "sha256": digest.hexdigest()}
     try:
         read = kind.read(path, options, limits)
-        if isinstance(read, Scene):
+        if isinstance(read, SceneTriangles):
             result = occupancy_of(read, options, limits)
         else:
             result = occupancy_of_outlines(read, options, limits) if isinstance(read, Outlines) else read

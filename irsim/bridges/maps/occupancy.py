@@ -11,7 +11,7 @@ import numpy as np
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import SIDES, Bools, Grid, Ints, Triangles, clipped, fitting_side, grid_over, side_notes
 from irsim.bridges.maps.regions import Level, find_levels
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Occupancy, Scene
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Occupancy, SceneTriangles
 from irsim.bridges.maps.voxels import Spans, Surfaces, few_pieces, floors_of, spans_of, walkable_of
 from irsim.common.arrays import Floats
 from irsim.components.maps._site import FREE, OCCUPIED, UNKNOWN
@@ -27,7 +27,7 @@ COARSE, FINE = 0.25, 0.1
 """Sides of cells in which walls may hide rooms, and in which they do not [m]."""
 
 
-def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> Occupancy:
+def occupancy_of(scene: SceneTriangles, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     """The map of one level of a scene.
 
     Raises:
@@ -99,7 +99,7 @@ def _with_ground(solid: Triangles, height: float, bounds: tuple[float, float, fl
     return np.concatenate([solid, corners[[[0, 1, 2], [0, 2, 3]]].astype(solid.dtype)])
 
 
-def _within_bounds(scene: Scene, bounds: tuple[float, float, float, float]) -> Scene:
+def _within_bounds(scene: SceneTriangles, bounds: tuple[float, float, float, float]) -> SceneTriangles:
     """The part of a scene between bounds of x and y [m]."""
     solid, floors, barred = (clipped(part, bounds) for part in (scene.solid, scene.floors, scene.barred))
     if not len(solid) + len(floors) + len(barred):

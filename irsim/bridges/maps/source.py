@@ -30,7 +30,7 @@ __all__ = [
     "Occupancy",
     "Outlined",
     "Outlines",
-    "Scene",
+    "SceneTriangles",
     "find_kind",
     "kinds",
     "known_free",
@@ -123,7 +123,7 @@ def known_free(values: Floats) -> Bools:
 
 
 @dataclass
-class Scene:
+class SceneTriangles:
     """Triangles of a scene.
 
     Attributes:
@@ -274,7 +274,7 @@ class Kind:
     title: str
     suffixes: tuple[str, ...]
     accepts: Callable[[bytes], bool]
-    read: Callable[[Path, ImportOptions, ImportLimits], Scene | Occupancy | Outlines]
+    read: Callable[[Path, ImportOptions, ImportLimits], SceneTriangles | Occupancy | Outlines]
     unknown: str = "occupied"
     extra: str = "mesh"
     libraries: tuple[str, ...] = ()

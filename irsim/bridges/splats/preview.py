@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw, ImageFont
 from pydantic import Field
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.export.cameras import CameraOptions, Scene
+from irsim.bridges.export.cameras import CameraFrame, CameraOptions
 from irsim.bridges.frames import CAMERA_AXES, camera_pose, inverse
 from irsim.bridges.splats.reading import read_splats
 from irsim.bridges.splats.recording import Recording, body_splats, open_recording, path_splats
@@ -227,7 +227,7 @@ def _looking(place: Floats, target: Floats) -> Floats:
     return result
 
 
-def _in_scene(matrix: Floats, world: Scene) -> Floats:
+def _in_scene(matrix: Floats, world: CameraFrame) -> Floats:
     """A camera of irsim in the frame of the scene, as a rigid matrix."""
     result: Floats = world.transform @ matrix
     result[:3, :3] /= world.scale

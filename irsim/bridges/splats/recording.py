@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.export.cameras import PoseOptions, Scene, scene_of
+from irsim.bridges.export.cameras import CameraFrame, PoseOptions, scene_of
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.bridges.splats.splats import Singles, Splats
 from irsim.common.arrays import Floats
@@ -20,7 +20,7 @@ from irsim.runs.reading import Run, open_run
 from irsim.scenario.limits import Limits
 from irsim.simulation.scene import SceneDescription, SceneObject
 
-__all__ = ["Body", "Recording", "body_of", "body_splats", "open_recording", "path_splats"]
+__all__ = ["Prism", "Recording", "body_of", "body_splats", "open_recording", "path_splats"]
 
 ROBOT_HEIGHT_M, WALKER_HEIGHT_M, THING_HEIGHT_M = 0.5, 1.7, 1.0
 """Heights that objects of the plane are shown with: robots, other objects that move, and static objects."""
@@ -34,7 +34,7 @@ _UP = np.array([1.0, 0.0, 0.0, 0.0], dtype=np.float32)
 
 
 @dataclass(frozen=True)
-class Body:
+class Prism:
     """A prism over a footprint.
 
     Attributes:
@@ -58,7 +58,7 @@ class Body:
         return [[(float(x), float(y)) for x, y in ring.coords] for ring in rings]
 
 
-def body_of(agent: SceneObject) -> Body | None:
+def body_of(agent: SceneObject) -> Prism | None:
     """Shape and color of an object; None if it does not stand in the world.
 
     Args:
@@ -72,10 +72,10 @@ def body_of(agent: SceneObject) -> Body | None:
     if shape.is_empty or shape.area <= 0:
         return None
     height = ROBOT_HEIGHT_M if agent.role == "robot" else WALKER_HEIGHT_M if agent.moves else THING_HEIGHT_M
-    return Body(agent.name, agent.role, shape, height, agent.color)
+    return Prism(agent.name, agent.role, shape, height, agent.color)
 
 
-def body_splats(body: Body, pose: Floats) -> Splats:
+def body_splats(body: Prism, pose: Floats) -> Splats:
     """Opaque splats on the sides and the top of a body, frame of irsim.
 
     Args:
@@ -162,8 +162,8 @@ class Recording:
 
     run: Run
     scene: SceneDescription
-    world: Scene
-    bodies: tuple[Body, ...]
+    world: CameraFrame
+    bodies: tuple[Prism, ...]
     step: np.ndarray[tuple[int], np.dtype[np.int64]]
     time: Floats
     pose: Floats

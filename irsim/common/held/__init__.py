@@ -22,7 +22,7 @@ from tempfile import TemporaryDirectory
 from irsim.common.held.calls import HELD, PROCESS, current, install
 from irsim.common.held.folder import AVAILABLE, Folder
 
-__all__ = ["AVAILABLE", "Folder", "apart", "current", "for_children", "hold", "hold_for_good", "not_held"]
+__all__ = ["AVAILABLE", "Folder", "current", "elsewhere", "for_children", "hold", "hold_for_good", "not_held"]
 
 
 @contextmanager
@@ -49,7 +49,7 @@ def not_held() -> AbstractContextManager[None]:
 
 
 @contextmanager
-def apart(target: Path) -> Iterator[Path]:
+def elsewhere(target: Path) -> Iterator[Path]:
     """Where to write a file or folder by a library that opens files itself: elsewhere while a folder is held.
 
     Args:

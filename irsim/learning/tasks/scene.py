@@ -26,7 +26,7 @@ from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Variation, VariedLevel
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
-__all__ = ["Scene", "open_scene", "scenario_text", "task_scenario"]
+__all__ = ["TaskScene", "open_scene", "scenario_text", "task_scenario"]
 
 _MAY_VARY = {"state", "goals", "shape", "range_low", "range_high", "plot", "color", "description"}
 """Fields in which an object may differ between variants."""
@@ -39,7 +39,7 @@ _FIXES = {
 
 
 @dataclass(frozen=True)
-class Scene:
+class TaskScene:
     """The scenario of a task.
 
     Attributes:
@@ -69,12 +69,12 @@ def task_scenario(task: Task, folder: Path) -> ResolvedScenario:
     return open_scene(task, folder).scenario
 
 
-def open_scene(task: Task, folder: Path) -> Scene:
+def open_scene(task: Task, folder: Path) -> TaskScene:
     """The scenario of a task, and what is drawn in it. See :func:`task_scenario`."""
     base, warnings = _resolved(task, folder, task.parameters, {})
     draws = level_draws(task, base)
     if task.curriculum is None and not any(one.drawn or one.parameters for one in draws):
-        return Scene(base, draws, {}, warnings)
+        return TaskScene(base, draws, {}, warnings)
     names = dict.fromkeys(name for one in draws for name in one.parameters)
     table: dict[str, list[Value]] = {name: [] for name in names}
     variants: list[ResolvedScenario] = []
@@ -95,7 +95,7 @@ def open_scene(task: Task, folder: Path) -> Scene:
     levels = [VariedLevel(one.drawn, first, n) for one, first, n in zip(draws, firsts, counts, strict=True)]
     base.world = _roomy(base, variants)
     base.variation = Variation(levels, variants)
-    return Scene(base, draws, table, warnings)
+    return TaskScene(base, draws, table, warnings)
 
 
 def _is_plain(task: Task, level: int) -> bool:

@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import BinaryIO, cast
 
-from irsim.common.child import Child, Writer, write_all
+from irsim.common.child import Child, Writer, write_to_pipe
 
 __all__ = ["Channel", "PeerError", "connect", "start"]
 
@@ -162,7 +162,7 @@ def _talk(
         while (line := asked.get()) is not None:
             try:
                 with contextlib.suppress(OSError):  # what a program said before it ended is read nevertheless
-                    write_all(writer, line + b"\n")
+                    write_to_pipe(writer, line + b"\n")
                 answer = reader.readline(MAX_LINE_BYTES + 1)
             except (OSError, ValueError) as error:  # closed at the other end, or by this one
                 answers.put(OSError(str(error)))

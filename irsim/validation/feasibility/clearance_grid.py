@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.validation.feasibility.movers import Mover
-from irsim.validation.feasibility.scenes import FAR, Scene
+from irsim.validation.feasibility.scenes import FAR, StartState
 
 __all__ = [
     "ClearanceGrid",
@@ -56,7 +56,7 @@ class ClearanceGrid:
         half: Half the diagonal of a cell [m], the largest error of a distance.
     """
 
-    scene: Scene
+    scene: StartState
     box: Box
     cells: core.Cells
     clearance: core.Clearance
@@ -97,7 +97,7 @@ def cells_over(box: Box, size: float, most: int) -> core.Cells:
     return (box[0], box[1]), (width / nx, height / ny), nx, ny
 
 
-def grid_of(scene: Scene, movers: list[Mover], margin: float = 0.0) -> ClearanceGrid:
+def grid_of(scene: StartState, movers: list[Mover], margin: float = 0.0) -> ClearanceGrid:
     """The grid over the world and a margin [m] around it, computed once for scenes with the same obstacles."""
     kept, key = scene.owner.kept, f"grid {margin}"
     if key not in kept:
@@ -106,7 +106,7 @@ def grid_of(scene: Scene, movers: list[Mover], margin: float = 0.0) -> Clearance
     return grid
 
 
-def _around(scene: Scene, movers: list[Mover], margin: float) -> ClearanceGrid:
+def _around(scene: StartState, movers: list[Mover], margin: float) -> ClearanceGrid:
     x0, y0, x1, y1 = scene.bounds
     box = (x0 - margin, y0 - margin, x1 + margin, y1 + margin)
     finest = min(mover.radius for mover in movers) / _CELLS_PER_RADIUS
@@ -121,7 +121,7 @@ def with_gaps_closed(grid: ClearanceGrid, gaps: list[Gap]) -> ClearanceGrid:
     return ClearanceGrid(grid.scene, grid.box, grid.cells, core.Clearance(terrain, grid.cells), grid.half)
 
 
-def _make_grid(scene: Scene, box: Box, cells: core.Cells) -> ClearanceGrid:
+def _make_grid(scene: StartState, box: Box, cells: core.Cells) -> ClearanceGrid:
     half = _HALF_DIAGONAL * max(cells[1]) * (1 + 1e-9)
     return ClearanceGrid(scene, box, cells, core.Clearance(scene.terrain, cells), half)
 

@@ -9,7 +9,7 @@ from irsim.scenario.checks import Context
 from irsim.scenario.checks.regions import ends_fit
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.reachability import Leg
-from irsim.validation.feasibility.scenes import Scene
+from irsim.validation.feasibility.scenes import StartState
 from irsim.validation.feasibility.tally import Tally
 
 __all__ = ["check"]
@@ -18,7 +18,7 @@ _MAX_SCENES = 3
 """Number of scenes in which routes are planned."""
 
 
-def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
+def check(context: Context, scene: StartState, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
     """Report goals that can be reached only by leaving ``within`` or entering ``avoid``."""
     confined = {
         mover.record.id: mover
@@ -40,7 +40,7 @@ def _is_confined(mover: Mover) -> bool:
     return confined and not mover.record.wander
 
 
-def _ends_fit(context: Context, scene: Scene, mover: Mover) -> bool:
+def _ends_fit(context: Context, scene: StartState, mover: Mover) -> bool:
     """Whether start and goals are where the object may be; other checks report the rest."""
     record = mover.record
     options: Any = record.active_behavior
@@ -49,7 +49,7 @@ def _ends_fit(context: Context, scene: Scene, mover: Mover) -> bool:
     return ends_fit(options, [scene.pose[record.id], *scene.goals[record.id]], zones, radius)
 
 
-def _report(mover: Mover, index: int, scene: Scene, tally: Tally) -> None:
+def _report(mover: Mover, index: int, scene: StartState, tally: Tally) -> None:
     options: Any = mover.record.active_behavior
     goals = scene.goals[mover.record.id]
     what = f"waypoint {index + 1} at" if len(goals) > 1 else "its goal"

@@ -13,7 +13,7 @@ import shapely
 import irsim._core as core
 from irsim.validation.feasibility.clearance_grid import Point
 from irsim.validation.feasibility.reachability import Leg
-from irsim.validation.feasibility.scenes import Scene, Thing
+from irsim.validation.feasibility.scenes import StartState, Thing
 
 __all__ = ["Trap", "first_pocket", "trap_of"]
 
@@ -38,7 +38,7 @@ class Trap:
     gap: float | None = None
 
 
-def trap_of(scene: Scene, leg: Leg) -> Trap | None:
+def trap_of(scene: StartState, leg: Leg) -> Trap | None:
     """The side that the straight line meets first, if its point nearest to the goal is not near one of its ends.
 
     A robot that slides along the side towards the goal stops at that point, as every further step leads away from the
@@ -59,7 +59,7 @@ def trap_of(scene: Scene, leg: Leg) -> Trap | None:
     return best[1]
 
 
-def first_pocket(scene: Scene, route: list[Leg]) -> tuple[Leg, Trap] | None:
+def first_pocket(scene: StartState, route: list[Leg]) -> tuple[Leg, Trap] | None:
     """The first leg that leads between two static circles which the body does not fit between, and where it stops."""
     for leg in route:
         body = leg.mover.shape.around
@@ -75,7 +75,7 @@ def first_pocket(scene: Scene, route: list[Leg]) -> tuple[Leg, Trap] | None:
     return None
 
 
-def _circles(scene: Scene) -> Iterator[tuple[float, float, float]]:
+def _circles(scene: StartState) -> Iterator[tuple[float, float, float]]:
     """Centre and radius of every static circle, world frame [m]."""
     for parts, (x, y, theta) in scene.things:
         cos, sin = math.cos(theta), math.sin(theta)

@@ -9,7 +9,7 @@ from irsim.common.text import metres, plural
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.reachability import Leg
-from irsim.validation.feasibility.scenes import Scene
+from irsim.validation.feasibility.scenes import StartState
 from irsim.validation.feasibility.tally import Tally
 from irsim.validation.scene_passages import Places, passages_of_legs
 
@@ -25,7 +25,7 @@ _SAME_M = 0.3
 """Passages whose middles are closer are the same one [m]."""
 
 
-def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
+def check(context: Context, scene: StartState, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
     """Report a passage in which no two of the robots that drive through it have room side by side."""
     robots = [mover for mover in movers if _may_jam(mover) and legs.get(mover.record.id)]
     if len(robots) < 2 or scene.seed >= _MAX_SCENES:

@@ -22,7 +22,7 @@ from irsim.common.arrays import Floats
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.clearance_grid import Gap
 from irsim.validation.feasibility.movers import Mover
-from irsim.validation.feasibility.scenes import Scene
+from irsim.validation.feasibility.scenes import StartState
 
 __all__ = ["Gaps", "Opening", "Passages", "find_gaps", "outlines_of", "passages_of"]
 
@@ -149,7 +149,7 @@ class Gaps:
         return float(x), float(y)
 
 
-def find_gaps(scene: Scene, *, most: float, open_edge: bool) -> Gaps | None:
+def find_gaps(scene: StartState, *, most: float, open_edge: bool) -> Gaps | None:
     """Find the narrow gaps of a scene.
 
     Args:
@@ -263,7 +263,7 @@ class Passages:
 
 
 def passages_of(
-    context: Context, scene: Scene, movers: list[Mover], blocked_goals: set[tuple[int, int]], *, ease: float
+    context: Context, scene: StartState, movers: list[Mover], blocked_goals: set[tuple[int, int]], *, ease: float
 ) -> Passages | None:
     """Find the narrowest gaps on the paths of movers for which cells are too coarse.
 
@@ -312,7 +312,7 @@ def passages_of(
     return Passages(barriers, gaps)
 
 
-def _arrival_places(scene: Scene, mover: Mover, goal: Point) -> tuple[list[Point], float]:
+def _arrival_places(scene: StartState, mover: Mover, goal: Point) -> tuple[list[Point], float]:
     """Places that sample the region in which a mover counts as arrived.
 
     Returns:
@@ -332,5 +332,5 @@ def _arrival_places(scene: Scene, mover: Mover, goal: Point) -> tuple[list[Point
     return [place for place in places if not _hits(scene, place, radius)], radius
 
 
-def _hits(scene: Scene, place: Point, radius: float) -> bool:
+def _hits(scene: StartState, place: Point, radius: float) -> bool:
     return scene.terrain.collides([core.Circle(radius=radius, center=[0, 0])], (*place, 0.0))

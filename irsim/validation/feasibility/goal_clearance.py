@@ -9,7 +9,7 @@ from irsim.common.text import metres
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.clearance_grid import Point, free_place, grid_of
 from irsim.validation.feasibility.movers import Mover
-from irsim.validation.feasibility.scenes import Scene
+from irsim.validation.feasibility.scenes import StartState
 from irsim.validation.feasibility.tally import Tally
 
 __all__ = ["check"]
@@ -21,7 +21,7 @@ _SLACK = 1e-3
 """Share by which the disc is smaller than the body, which may touch an obstacle."""
 
 
-def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> set[tuple[int, int]]:
+def check(context: Context, scene: StartState, movers: list[Mover], tally: Tally) -> set[tuple[int, int]]:
     """Report goals and waypoints that cannot be reached because of what stands there.
 
     Returns:
@@ -81,7 +81,7 @@ def _goal_term(goals: list[list[float]], index: int) -> str:
     return f"waypoint {index + 1}" if len(goals) > 1 else "the goal"
 
 
-def _behind_walls(context: Context, scene: Scene, mover: Mover, goal: list[float]) -> bool:
+def _behind_walls(context: Context, scene: StartState, mover: Mover, goal: list[float]) -> bool:
     """Whether a goal lies outside walls that enclose the robot, too far for it to count as arrived at the wall."""
     if context.scenario.world.boundary != "walls":
         return False
@@ -93,7 +93,7 @@ def _behind_walls(context: Context, scene: Scene, mover: Mover, goal: list[float
     return outside and x0 <= x <= x1 and y0 <= y <= y1 and off >= mover.reach
 
 
-def fits_at(scene: Scene, mover: Mover, goal: Point) -> bool:
+def fits_at(scene: StartState, mover: Mover, goal: Point) -> bool:
     """Whether the disc inside the body fits at a place that counts as arrived."""
     disc = [core.Circle(radius=mover.radius * (1 - _SLACK), center=[0, 0])]
     if not scene.terrain.collides(disc, (*goal, 0.0)):
@@ -107,11 +107,11 @@ def fits_at(scene: Scene, mover: Mover, goal: Point) -> bool:
     return False
 
 
-def _start(scene: Scene, mover: Mover) -> Point:
+def _start(scene: StartState, mover: Mover) -> Point:
     return mover.centre(scene.pose[mover.record.id])
 
 
-def _reason(context: Context, scene: Scene, mover: Mover, goal: list[float]) -> str:
+def _reason(context: Context, scene: StartState, mover: Mover, goal: list[float]) -> str:
     point = [core.Circle(radius=0.0, center=[0, 0])]
     inside = scene.terrain.collides(point, (goal[0], goal[1], 0.0))
     name = _blocker(context, scene, mover, goal, 0.0 if inside else mover.radius)
@@ -120,7 +120,7 @@ def _reason(context: Context, scene: Scene, mover: Mover, goal: list[float]) -> 
     return f"{name} is closer than the {metres(mover.radius)} that the body needs"
 
 
-def _blocker(context: Context, scene: Scene, mover: Mover, goal: list[float], radius: float) -> str:
+def _blocker(context: Context, scene: StartState, mover: Mover, goal: list[float], radius: float) -> str:
     """Name of the obstacle within a radius of a goal."""
     disc = [core.Circle(radius=radius, center=[0, 0])]
     still = [r for r in context.resolved.objects if r.static and not r.unobstructed]

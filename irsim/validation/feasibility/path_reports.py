@@ -13,7 +13,7 @@ from irsim.env import Env
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.clearance_grid import ClearanceGrid, Gap, Point, grid_of, reachable_place
 from irsim.validation.feasibility.movers import Mover
-from irsim.validation.feasibility.scenes import FAR, Scene
+from irsim.validation.feasibility.scenes import FAR, StartState
 from irsim.validation.feasibility.tally import Tally
 from irsim.validation.scene_passages import Places, passages_of_legs
 
@@ -34,7 +34,7 @@ _BESIDE_M = 0.02
 def report_no_path(
     context: Context,
     grid: ClearanceGrid,
-    scene: Scene,
+    scene: StartState,
     movers: list[Mover],
     mover: Mover,
     start: Point,
@@ -55,7 +55,7 @@ def report_no_path(
 
 def add_unreachable(
     context: Context,
-    scene: Scene,
+    scene: StartState,
     mover: Mover,
     index: int,
     widest: Gap | None,
@@ -111,7 +111,7 @@ def report_narrow(
     mover: Mover,
     index: int,
     gap: Gap,
-    scene: Scene,
+    scene: StartState,
     tally: Tally,
     grid: ClearanceGrid | None = None,
     start: Point | None = None,
@@ -156,7 +156,7 @@ def report_narrow(
 
 
 def _driven_gaps(
-    context: Context, scene: Scene, mover: Mover, index: int, narrowest: Gap
+    context: Context, scene: StartState, mover: Mover, index: int, narrowest: Gap
 ) -> tuple[float, list[tuple[float, float]]]:
     """Width and places of the narrowest gaps on the way that a robot drives, as the table of a scenario tells them.
 
@@ -175,7 +175,7 @@ def _driven_gaps(
     return width, [place for _, place in own]
 
 
-def _is_drawn(context: Context, scene: Scene, gap: Gap) -> bool:
+def _is_drawn(context: Context, scene: StartState, gap: Gap) -> bool:
     """Whether a gap is one of a map that is drawn by a seed, whose gaps cannot be widened one by one."""
     if not hasattr(context.scenario.world.obstacle_map, "fill"):
         return False
@@ -184,7 +184,7 @@ def _is_drawn(context: Context, scene: Scene, gap: Gap) -> bool:
     return bool(maps) and core.Terrain(FAR, maps).collides([disc], (*gap.place, 0.0))
 
 
-def _other_goal(scene: Scene, mover: Mover, index: int, grid: ClearanceGrid | None, start: Point | None) -> str:
+def _other_goal(scene: StartState, mover: Mover, index: int, grid: ClearanceGrid | None, start: Point | None) -> str:
     """Another goal as advice, if possible one to which a wider path leads."""
     place = None
     if grid is not None and start is not None and not scene.rough:
@@ -237,7 +237,7 @@ class Missed:
     finer: float | None
 
 
-def missed_way(context: Context, scene: Scene, mover: Mover, index: int) -> Missed | None:
+def missed_way(context: Context, scene: StartState, mover: Mover, index: int) -> Missed | None:
     """Find out whether a robot with behavior `follow` misses an existing path.
 
     Args:
@@ -294,7 +294,7 @@ def _cell_size(context: Context, planner: Any) -> float | None:
 
 
 def _try_alone(
-    context: Context, scene: Scene, mover: Mover, index: int, behavior: Any
+    context: Context, scene: StartState, mover: Mover, index: int, behavior: Any
 ) -> Literal["arrives", "stuck", "no path"]:
     """Simulate the robot with all other moving objects out of its way; it also "arrives" if the steps run out."""
     records = []

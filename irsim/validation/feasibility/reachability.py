@@ -22,7 +22,7 @@ from irsim.validation.feasibility.clearance_grid import (
 from irsim.validation.feasibility.gaps import Passages, find_gaps, passages_of
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.path_reports import EASE, add_unreachable, report_narrow, report_no_path
-from irsim.validation.feasibility.scenes import Scene
+from irsim.validation.feasibility.scenes import StartState
 from irsim.validation.feasibility.tally import Tally
 
 __all__ = ["Leg", "check"]
@@ -64,7 +64,7 @@ class Leg:
 
 def check(
     context: Context,
-    scene: Scene,
+    scene: StartState,
     movers: list[Mover],
     tally: Tally,
     *,
@@ -153,7 +153,7 @@ def check(
     return legs
 
 
-def _starts_in_obstacle(scene: Scene, mover: Mover) -> bool:
+def _starts_in_obstacle(scene: StartState, mover: Mover) -> bool:
     """Whether a mover starts in an obstacle, which other checks report."""
     return scene.terrain.collides(parts_of(mover.record.shape), scene.pose[mover.record.id])
 
@@ -178,7 +178,7 @@ def _open_ends(grid: ClearanceGrid, mover: Mover, start: Point, arrival: Point) 
 
 
 def _narrowest_on_path(
-    grid: ClearanceGrid, scene: Scene, mover: Mover, start: Point, arrival: Point
+    grid: ClearanceGrid, scene: StartState, mover: Mover, start: Point, arrival: Point
 ) -> tuple[int, Gap | None]:
     """Number of gaps that were measured, and the narrowest gap on the path; None if all gaps are wide."""
     need, start_top, goal_top = 2 * mover.radius, *_open_ends(grid, mover, start, arrival)
@@ -203,7 +203,7 @@ def _narrowest_on_path(
 
 def _check_passages(
     context: Context,
-    scene: Scene,
+    scene: StartState,
     grid: ClearanceGrid,
     passages: Passages | None,
     mover: Mover,
@@ -236,7 +236,7 @@ def _check_passages(
     return True
 
 
-def _is_swept_line_blocked(scene: Scene, mover: Mover, start: Point, goal: Point) -> bool:
+def _is_swept_line_blocked(scene: StartState, mover: Mover, start: Point, goal: Point) -> bool:
     """Whether the disc hits an obstacle on the straight line before it counts as arrived; exact, without cells."""
     length = math.dist(start, goal)
     left = length - mover.reach
@@ -274,7 +274,7 @@ def _is_line_blocked(grid: ClearanceGrid, mover: Mover, start: Point, goal: Poin
     return bool(grid.at(points).min() < mover.radius - grid.half)
 
 
-def _check_wandering(grid: ClearanceGrid, scene: Scene, mover: Mover, start: Point, tally: Tally) -> None:
+def _check_wandering(grid: ClearanceGrid, scene: StartState, mover: Mover, start: Point, tally: Tally) -> None:
     """Report a wandering mover that cannot reach many of its random goals, which are drawn regardless of obstacles."""
     if _starts_in_obstacle(scene, mover):
         return

@@ -19,7 +19,7 @@ from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.simulation.build import build_world
 
-__all__ = ["FAR", "Drawn", "Scene", "scenes_of"]
+__all__ = ["FAR", "Drawn", "StartState", "scenes_of"]
 
 _MAX_SEEDS = 20
 """Number of seeds that are tried."""
@@ -38,7 +38,7 @@ Thing = tuple[list[Any], list[float]]
 
 
 @dataclass
-class Scene:
+class StartState:
     """The initial state of a world.
 
     Attributes:
@@ -58,19 +58,19 @@ class Scene:
     bounds: tuple[float, float, float, float]
     rough: bool = False
     kept: dict[str, Any] = field(default_factory=dict, repr=False)
-    _same: Scene | None = field(default=None, repr=False)
+    _same: StartState | None = field(default=None, repr=False)
 
     @cached_property
     def terrain(self) -> core.Terrain:
         """The static obstacles, ready for collision queries."""
         return self._same.terrain if self._same is not None else core.Terrain(FAR, self.things)
 
-    def shares_with(self, other: Scene) -> None:
+    def shares_with(self, other: StartState) -> None:
         """Declare that another scene has the same static obstacles, so that both use its results."""
         self._same = other
 
     @property
-    def owner(self) -> Scene:
+    def owner(self) -> StartState:
         """The scene that keeps the results for all scenes with the same static obstacles."""
         return self if self._same is None else self._same
 
@@ -87,7 +87,7 @@ class Drawn:
         own: The seed of the scenario itself, if it has one.
     """
 
-    scenes: list[Scene]
+    scenes: list[StartState]
     random: bool
     tried: int
     failed: dict[int, int]
@@ -114,7 +114,7 @@ def scenes_of(context: Context) -> Drawn:
     world, state = _build_worlds(context, seeds)
     failed = {seed: int(state.failed_placement[w]) for w, seed in enumerate(seeds) if state.failed_placement[w] >= 0}
     good = [w for w, seed in enumerate(seeds) if seed not in failed]
-    scenes: list[Scene] = []
+    scenes: list[StartState] = []
     for w in good[:_MAX_TERRAINS] if random_things else good:
         things = scenes[0].things if scenes and not random_things else _things(context, world, state, w)
         scenes.append(_scene_of_world(context, world, state, w, seeds[w], things))
@@ -136,7 +136,7 @@ def _is_obstacle(record: ObjectRecord) -> bool:
     return record.static and not record.unobstructed
 
 
-def _fixed_scene(context: Context) -> Scene:
+def _fixed_scene(context: Context) -> StartState:
     """The scene of a scenario in which nothing is random."""
     records = context.resolved.objects
     known: dict[int, list[Any]] = {}
@@ -147,7 +147,7 @@ def _fixed_scene(context: Context) -> Scene:
             if key not in known:
                 known[key] = parts_of(record.shape)
             things.append((known[key], record.state[:3]))
-    return Scene(
+    return StartState(
         seed=context.scenario.world.seed or 0,
         pose={record.id: record.state[:3] for record in records},
         goals={record.id: record.goals for record in records},
@@ -171,10 +171,10 @@ def _build_worlds(context: Context, seeds: list[int]) -> tuple[core.World, core.
 
 def _scene_of_world(
     context: Context, world: core.World, state: core.State, w: int, seed: int, things: list[Thing]
-) -> Scene:
+) -> StartState:
     first = w * world.objects
     records = context.resolved.objects
-    return Scene(
+    return StartState(
         seed=seed,
         pose={record.id: state.pose[first + k].tolist() for k, record in enumerate(records)},
         goals={record.id: state.goals(first + k) for k, record in enumerate(records)},

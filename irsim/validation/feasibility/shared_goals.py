@@ -6,7 +6,7 @@ import numpy as np
 
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.movers import Mover
-from irsim.validation.feasibility.scenes import Scene
+from irsim.validation.feasibility.scenes import StartState
 from irsim.validation.feasibility.tally import Tally
 
 __all__ = ["check"]
@@ -15,7 +15,7 @@ _MAX_ROBOTS = 1000
 """Scenes with more robots are not checked."""
 
 
-def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> None:
+def check(context: Context, scene: StartState, movers: list[Mover], tally: Tally) -> None:
     """Report robots whose last goals are so close that the first to arrive blocks the other."""
     last = [
         (mover, goals[-1])

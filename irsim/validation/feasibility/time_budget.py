@@ -19,7 +19,7 @@ from irsim.validation.feasibility.clearance_grid import ClearanceGrid
 from irsim.validation.feasibility.dead_ends import Trap, first_pocket, trap_of
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.reachability import Leg
-from irsim.validation.feasibility.scenes import Scene
+from irsim.validation.feasibility.scenes import StartState
 from irsim.validation.feasibility.tally import Tally
 
 __all__ = ["check"]
@@ -68,7 +68,7 @@ class _Need:
         return math.ceil(max(self.total + self.moving, self.total / _TIGHT_TIME_SHARE))
 
 
-def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
+def check(context: Context, scene: StartState, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
     """Report robots that cannot arrive in time, or that their behavior leads to a wall."""
     going = [m for m in movers if m.record.id in legs and not m.record.wander and m.record.role == "robot"]
     straight = {m.record.id: _straight(legs[m.record.id]) for m in going}

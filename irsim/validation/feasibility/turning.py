@@ -11,7 +11,7 @@ from irsim.episodes.obstructions import lacks_reverse, needs_reverse, reverse_fi
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.reachability import Leg
-from irsim.validation.feasibility.scenes import Scene
+from irsim.validation.feasibility.scenes import StartState
 from irsim.validation.feasibility.tally import Tally
 
 __all__ = ["check"]
@@ -26,7 +26,7 @@ _STRAIGHT = 0.01
 Pose = tuple[float, float, float]
 
 
-def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
+def check(context: Context, scene: StartState, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
     """Report cars that would have to back up on a free straight line to a goal, but cannot."""
     cars = [m for m in movers if lacks_reverse(m.record) and legs.get(m.record.id) and not m.record.wander]
     for mover in cars[:_MAX_CARS]:

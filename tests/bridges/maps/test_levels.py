@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.occupancy import eroded, occupancy_of, within
 from irsim.bridges.maps.regions import connected, masked_regions
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Occupancy, Scene
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Occupancy, SceneTriangles
 from irsim.bridges.maps.writing import suggest_trip
 from irsim.components.maps._site import FREE, OCCUPIED, UNKNOWN
 from tests.bridges.maps.scenes import box, flat, house
 
 
 def occupancy(triangles: np.ndarray, **options) -> Occupancy:
-    return occupancy_of(Scene("irsim", triangles), ImportOptions(**options), ImportLimits())
+    return occupancy_of(SceneTriangles("irsim", triangles), ImportOptions(**options), ImportLimits())
 
 
 def at(result: Occupancy, x: float, y: float) -> float:

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic import BaseModel, ConfigDict
 
 from irsim.common.lazy import module_names
-from irsim_evals.grader.body import Body
+from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.matching import show
 from irsim_evals.grader.outcome import Mark, Stage
 
 if TYPE_CHECKING:
-    from irsim_evals.grader.episode import Episode
+    from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
-    from irsim_evals.grader.scene import Scene
+    from irsim_evals.grader.scene import GradedScene
 
 __all__ = [
     "AnswerPredicate", "EpisodePredicate", "Observation", "OfBodies", "Predicate", "ScenePredicate", "SeedsPredicate",
@@ -67,7 +67,7 @@ class ScenePredicate(Predicate):
 
     subject: ClassVar[Literal["scene", "seeds", "episode", "answer"]] = "scene"
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Look at one world."""
         raise NotImplementedError
 
@@ -95,7 +95,7 @@ class EpisodePredicate(Predicate):
     stage: ClassVar[Stage] = "behavior"
     subject: ClassVar[Literal["scene", "seeds", "episode", "answer"]] = "episode"
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look at one episode."""
         raise NotImplementedError
 
@@ -117,8 +117,8 @@ class AnswerPredicate(Predicate):
 
 def judged(
     expected: str,
-    seen: Sequence[tuple[Body, Any]],
-    wrong: Sequence[tuple[Body, Any]],
+    seen: Sequence[tuple[GradedBody, Any]],
+    wrong: Sequence[tuple[GradedBody, Any]],
     key: str,
     *,
     right: str = "",
@@ -143,7 +143,7 @@ def judged(
     return Observation(not wrong, expected, said + observed, where, marks=list(marks))
 
 
-def middle(bodies: Sequence[Body]) -> tuple[float, float]:
+def middle(bodies: Sequence[GradedBody]) -> tuple[float, float]:
     """Mean of the positions of some bodies."""
     x, y = (sum(values) / len(bodies) for values in zip(*(body.position for body in bodies), strict=True))
     return x, y
@@ -172,7 +172,7 @@ def registered() -> dict[str, type[Predicate]]:
     return dict(sorted(_REGISTERED.items()))
 
 
-def summary(pairs: Sequence[tuple[Body, Any]]) -> str:
+def summary(pairs: Sequence[tuple[GradedBody, Any]]) -> str:
     """Values of some bodies: ``robot_1: 0.5, robot_2: none and 3 more``."""
     shown = ", ".join(f"{body.name}: {show(value)}" for body, value in pairs[:_MAX_NAMED])
     left = len(pairs) - _MAX_NAMED

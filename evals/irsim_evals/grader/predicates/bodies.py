@@ -12,9 +12,9 @@ from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePred
 from irsim_evals.grader.properties import PROPERTIES, PropertyName, value_of, yaml_path
 
 if TYPE_CHECKING:
-    from irsim_evals.grader.body import Body
+    from irsim_evals.grader.body import GradedBody
     from irsim_evals.grader.material import Material
-    from irsim_evals.grader.scene import Scene
+    from irsim_evals.grader.scene import GradedScene
 
 SENSOR_KINDS: dict[str, Kind] = {
     "name": "name",
@@ -42,7 +42,7 @@ class Count(OfBodies, ScenePredicate):
     number: Match
     """Accepted numbers."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Count them."""
         count = len(material.bodies(scene, self.of))
         expected = f"{self.of}: {self.number.words()}"
@@ -58,7 +58,7 @@ class Each(OfBodies, ScenePredicate):
     share: Quantity = 1.0
     """Share of the bodies that must have them."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Look at each of them."""
         bodies = material.bodies(scene, self.of)
         words = ", ".join(f"{name} {match.words()}" for name, match in self.has.items())
@@ -89,7 +89,7 @@ class Distinct(OfBodies, ScenePredicate):
     number: Match
     """Accepted numbers of different values."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Collect the values."""
         bodies = material.bodies(scene, self.of)
         every_value = [value_of(scene, body, self.property) for body in bodies]
@@ -113,7 +113,7 @@ class Placed(OfBodies, ScenePredicate):
     rows: list[dict[PropertyName, Match]]
     """For each row: property → accepted values."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Find a body for each row."""
         bodies = material.bodies(scene, self.of)
         expected = f"{self.of}: one for each of {len(self.rows)} rows"
@@ -135,10 +135,10 @@ class Placed(OfBodies, ScenePredicate):
             marks=[Mark(points=[list(body.position)], text=body.name) for body in odd],
         )
 
-    def _fits(self, scene: Scene, body: Body, row: dict[str, Match]) -> bool:
+    def _fits(self, scene: GradedScene, body: GradedBody, row: dict[str, Match]) -> bool:
         return all(matches(match, value_of(scene, body, key), PROPERTIES[key].kind) for key, match in row.items())
 
-    def _values(self, scene: Scene, body: Body) -> list[Any]:
+    def _values(self, scene: GradedScene, body: GradedBody) -> list[Any]:
         return [value_of(scene, body, name) for name in (self.rows[0] if self.rows else ())]
 
 
@@ -165,7 +165,7 @@ class Sensor(OfBodies, ScenePredicate):
     number: Match = Match(eq=1)
     """How many sensors of each body have them."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Look at the sensors of each body."""
         bodies = material.bodies(scene, self.of)
         words = ", ".join(f"{name} {match.words()}" for name, match in self.has.items()) or "sensors"

@@ -13,7 +13,7 @@ from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, judged, register, summary
 
 if TYPE_CHECKING:
-    from irsim_evals.grader.episode import Episode
+    from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
 
 
@@ -31,7 +31,7 @@ class Visits(OfBodies, EpisodePredicate):
     """Greatest distance of the path from the straight lines between the places, the way back to the first one
     included [m]; default: any."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Follow the paths."""
         bodies = material.bodies(episode.scene, self.of)
         shown = ", ".join(f"({show(x)}, {show(y)})" for x, y in self.places)
@@ -70,7 +70,7 @@ class Enters(OfBodies, EpisodePredicate):
     avoids: list[tuple[Quantity, Quantity, Quantity, Quantity]] = []
     """Regions that its position never comes into [m]."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Follow every body."""
         bodies = material.bodies(episode.scene, self.of)
         expected = f"{self.of} comes into " + ", ".join(show(list(region)) for region in self.regions)
@@ -112,7 +112,7 @@ class OneWay(OfBodies, EpisodePredicate):
     back: Quantity = 0.1
     """Greatest distance that a body may come back within the region [m]."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Follow every body through the region."""
         bodies = material.bodies(episode.scene, self.of)
         degrees = math.degrees(self.direction)
@@ -155,7 +155,7 @@ class Timetable(OfBodies, EpisodePredicate):
     tol: Quantity = 0.5
     """Greatest deviation from these times [s]."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look for the crossings."""
         bodies = material.bodies(episode.scene, self.of)
         expected = f"{self.of} cross the line {show(list(self.start))} to {show(list(self.end))} after "
@@ -174,7 +174,7 @@ class Timetable(OfBodies, EpisodePredicate):
             marks=[Mark(points=[list(self.start), list(self.end)], text="line")],
         )
 
-    def _crossings(self, episode: Episode, index: int) -> list[float]:
+    def _crossings(self, episode: GradedEpisode, index: int) -> list[float]:
         length = math.dist(self.start, self.end) or 1.0
         unit = (np.array(self.end) - self.start) / length
         offset = episode.positions(index) - np.array(self.start)
@@ -198,7 +198,7 @@ class Crosses(OfBodies, EpisodePredicate):
     spread: Quantity = 0.0
     """Least time between the first and the last crossing [s]."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look for changes of side."""
         bodies, ways = material.bodies(episode.scene, self.of), material.bodies(episode.scene, self.way_of)
         expected = f"{self.of} that cross ahead of {self.way_of}: {self.number.words()}"

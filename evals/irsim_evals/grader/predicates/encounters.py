@@ -13,8 +13,8 @@ from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, register, summary
 
 if TYPE_CHECKING:
-    from irsim_evals.grader.body import Body
-    from irsim_evals.grader.episode import Episode
+    from irsim_evals.grader.body import GradedBody
+    from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
 
 
@@ -25,7 +25,7 @@ class Collisions(OfBodies, EpisodePredicate):
     number: Match = Match(eq=0)
     """Accepted numbers of bodies that collide."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Count them."""
         bodies = material.bodies(episode.scene, self.of)
         expected = f"{self.of} that collide: {self.number.words()}"
@@ -54,7 +54,7 @@ class Separation(EpisodePredicate):
     distance: Match
     """Accepted values of the smallest distance [m]."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Measure at every step."""
         first, second = material.bodies(episode.scene, self.of), material.bodies(episode.scene, self.to)
         expected = f"smallest distance of {self.of} to {self.to}: {self.distance.words()} m"
@@ -67,7 +67,7 @@ class Separation(EpisodePredicate):
         )
 
 
-def closest(episode: Episode, a: Body, b: Body) -> float:
+def closest(episode: GradedEpisode, a: GradedBody, b: GradedBody) -> float:
     """The smallest distance between the footprints of two bodies during an episode [m]."""
     first, second = episode.trace.pose[:, a.index], episode.trace.pose[:, b.index]
     centers = np.hypot(*(first[:, :2] - second[:, :2]).T)
@@ -78,7 +78,7 @@ def closest(episode: Episode, a: Body, b: Body) -> float:
     return min(float(shapely.distance(_moved(a, first[row]), _moved(b, second[row]))) for row in near.tolist())
 
 
-def _moved(body: Body, pose: Any) -> Any:
+def _moved(body: GradedBody, pose: Any) -> Any:
     if body.static:
         return body.footprint
     x, y, heading = body.pose
@@ -101,7 +101,7 @@ class RangeTrend(OfBodies, EpisodePredicate):
     by: Quantity = 0.1
     """Least change of the distance that counts [m]."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Compare the distances."""
         bodies, one = material.bodies(episode.scene, self.of), material.bodies(episode.scene, self.to)
         expected = f"{self.of} nearer to {self.to}: {self.nearer.words()}, farther: {self.farther.words()}"
@@ -138,7 +138,7 @@ class Radial(EpisodePredicate):
         """The one scan."""
         return (self.at,)
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Count the beams."""
         bodies = material.bodies(episode.scene, self.of)
         expected = f"beams nearer: {self.approaching.words()}, away: {self.receding.words()}"

@@ -12,7 +12,7 @@ from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, judged, register, summary
 
 if TYPE_CHECKING:
-    from irsim_evals.grader.episode import Episode
+    from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
 
 
@@ -27,7 +27,7 @@ class Arrive(OfBodies, EpisodePredicate):
     or_near: Quantity | None = None
     """Ending at most this far from the goal [m] counts as well."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look at the arrivals."""
         bodies = material.bodies(episode.scene, self.of)
         end = episode.duration if self.within is None else self.within
@@ -60,7 +60,7 @@ class EndsAt(OfBodies, EpisodePredicate):
     share: Match
     """Accepted shares."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look at the last positions."""
         bodies = material.bodies(episode.scene, self.of)
         expected = f"{self.of} ends at {self.share.words()} of its way"
@@ -92,7 +92,7 @@ class Travel(OfBodies, EpisodePredicate):
     dy: Match | None = None
     """Accepted differences of y from start to end [m]."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Measure the paths."""
         bodies = material.bodies(episode.scene, self.of)
         wanted = {"farthest": self.farthest, "path": self.path, "dx": self.dx, "dy": self.dy}
@@ -125,7 +125,7 @@ class Speed(OfBodies, EpisodePredicate):
     turn: Match | None = None
     """Accepted values of the greatest turn rate [rad/s]."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Measure from step to step."""
         bodies = material.bodies(episode.scene, self.of)
         wanted = {"highest": self.highest, "lowest": self.lowest, "turn": self.turn}
@@ -158,7 +158,7 @@ class Roams(OfBodies, EpisodePredicate):
     endless: bool = True
     """None of them may come to rest for the last fifth of the episode."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Count positions."""
         bodies = material.bodies(episode.scene, self.of)
         expected = f"each quadrant holds {self.share:.0%} of the positions of {self.of}"
@@ -187,7 +187,7 @@ class Explores(EpisodePredicate):
     growth: Match
     """Accepted factors."""
 
-    def observe(self, material: Material, episode: Episode) -> Observation:
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Compare the shares."""
         expected = f"explored share after {self.at:g} s: {self.growth.words()} times the share after the first step"
         if not episode.explored:

@@ -13,9 +13,9 @@ from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register
 
 if TYPE_CHECKING:
-    from irsim_evals.grader.body import Body
+    from irsim_evals.grader.body import GradedBody
     from irsim_evals.grader.material import Material
-    from irsim_evals.grader.scene import Scene
+    from irsim_evals.grader.scene import GradedScene
 
 __all__ = ["Point", "along", "free_length", "free_parts"]
 
@@ -77,7 +77,7 @@ def free_parts(solid: Any, start: Point, end: Point, depth: float) -> list[tuple
     return free
 
 
-def _width(scene: Scene, at: Point, heading: float) -> float:
+def _width(scene: GradedScene, at: Point, heading: float) -> float:
     """Free width [m] across a direction at a place, as if it were far where one side has no wall."""
     sides = [free_length(scene.solid, at, heading + turn, _FAR) for turn in (math.pi / 2, -math.pi / 2)]
     return _FAR if max(sides) >= _FAR else sum(sides)
@@ -100,7 +100,7 @@ class Corridor(OfBodies, ScenePredicate):
     start_within: Quantity | None = None
     """Greatest share of the corridor's length that lies before the start and behind the goal."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure the sections."""
         bodies = [body for body in material.bodies(scene, self.of) if body.goal is not None]
         expected = f"a corridor {self.width.words()} m wide" + (
@@ -129,7 +129,7 @@ class Corridor(OfBodies, ScenePredicate):
                 return Observation(False, expected, f"{show(max(back, front))} m of it lie before or behind the way")
         return Observation(True, expected, f"{self.sections} sections")
 
-    def _reach(self, scene: Scene, start: tuple[float, float], heading: float) -> float:
+    def _reach(self, scene: GradedScene, start: tuple[float, float], heading: float) -> float:
         """How far the walls go on from a place [m]."""
         x0, y0, x1, y1 = scene.bounds
         most, done = math.hypot(x1 - x0, y1 - y0), 0.0
@@ -138,7 +138,7 @@ class Corridor(OfBodies, ScenePredicate):
         return max(0.0, done - _LENGTH_STEP)
 
 
-def _end(body: Body) -> Point:
+def _end(body: GradedBody) -> Point:
     goal = body.goal or [0.0, 0.0]
     return goal[0], goal[1]
 
@@ -164,7 +164,7 @@ class Doorway(ScenePredicate):
     tol: Quantity = 0.2
     """Greatest distance of an opening's middle from the wanted one [m]."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Look for openings."""
         parts = free_parts(scene.solid, self.start, self.end, self.depth)
         heading = math.atan2(self.end[1] - self.start[1], self.end[0] - self.start[0])
@@ -196,7 +196,7 @@ class Pocket(OfBodies, ScenePredicate):
     depth: Match
     """Accepted depths from the opening to the back [m]."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Go in and measure."""
         bodies = [body for body in material.bodies(scene, self.of) if body.goal is not None]
         expected = f"a pocket {self.width.words()} m wide and {self.depth.words()} m deep on the way"
@@ -222,7 +222,7 @@ class Pocket(OfBodies, ScenePredicate):
                 )
         return Observation(True, expected, "so it is")
 
-    def _go_out(self, scene: Scene, start: Point, heading: float, back: float) -> tuple[list[float], float]:
+    def _go_out(self, scene: GradedScene, start: Point, heading: float, back: float) -> tuple[list[float], float]:
         """Free widths from the back to the opening, and the depth [m]."""
         widths: list[float] = []
         depth = _BEFORE
@@ -235,7 +235,7 @@ class Pocket(OfBodies, ScenePredicate):
         return widths, depth - _DEPTH_STEP / 2
 
 
-def _gap(scene: Scene, inside: Point, heading: float, far: float) -> Point | None:
+def _gap(scene: GradedScene, inside: Point, heading: float, far: float) -> Point | None:
     """A place where one sees out of the pocket from its inside other than through its opening; None without one."""
     for k in range(_RAYS):
         direction = heading + math.pi * (k / (_RAYS - 1) - 0.5)

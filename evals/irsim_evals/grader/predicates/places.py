@@ -15,9 +15,9 @@ from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, middle, register, summary
 
 if TYPE_CHECKING:
-    from irsim_evals.grader.body import Body
+    from irsim_evals.grader.body import GradedBody
     from irsim_evals.grader.material import Material
-    from irsim_evals.grader.scene import Scene
+    from irsim_evals.grader.scene import GradedScene
 
 _DIRECTIONS = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": -math.pi / 2}
 
@@ -35,7 +35,7 @@ class Inside(OfBodies, ScenePredicate):
     shares: tuple[Quantity, Quantity, Quantity, Quantity] | None = None
     """The same as shares of the world's extent: ``[0, 0, 0.33, 0.33]`` is its lower left third."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Look at each of them."""
         bodies = material.bodies(scene, self.of)
         x0, y0, x1, y1 = self._box(scene)
@@ -49,14 +49,14 @@ class Inside(OfBodies, ScenePredicate):
         marks = [Mark(points=[list(point)], text=body.name) for body, point in wrong]
         return judged(expected, points, wrong, key, right=f"all {len(bodies)}", marks=marks)
 
-    def _box(self, scene: Scene) -> tuple[float, float, float, float]:
+    def _box(self, scene: GradedScene) -> tuple[float, float, float, float]:
         if self.region is not None:
             return self.region
         x0, y0, x1, y1 = scene.bounds
         a, b, c, d = self.shares or (0.0, 0.0, 1.0, 1.0)
         return x0 + a * (x1 - x0), y0 + b * (y1 - y0), x0 + c * (x1 - x0), y0 + d * (y1 - y0)
 
-    def _points(self, body: Body) -> list[tuple[float, float]]:
+    def _points(self, body: GradedBody) -> list[tuple[float, float]]:
         if self.what == "goal":
             return [(goal[0], goal[1]) for goal in body.goals]
         if self.what == "footprint":
@@ -91,7 +91,7 @@ class Near(OfBodies, ScenePredicate):
             raise ValueError("give either `to` or `place`")
         return self
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure."""
         bodies = material.bodies(scene, self.of)
         others = [] if self.to is None else material.bodies(scene, self.to)
@@ -104,7 +104,7 @@ class Near(OfBodies, ScenePredicate):
         marks = [Mark(points=[list(body.position)], text=body.name) for body, _ in wrong]
         return judged(expected, distances, wrong, "goal" if self.what == "goal" else "state", marks=marks)
 
-    def _measure(self, body: Body, others: list[Body]) -> float | None:
+    def _measure(self, body: GradedBody, others: list[GradedBody]) -> float | None:
         if self.what == "goal":
             if body.goal is None:
                 return None
@@ -134,7 +134,7 @@ class Spacing(OfBodies, ScenePredicate):
     distance: Match
     """Accepted values of the smallest distance [m]."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure all pairs."""
         bodies = [body for body in material.bodies(scene, self.of) if self.what != "goal" or body.goal]
         expected = f"{self.what} of {self.of} apart: {self.distance.words()} m"
@@ -146,7 +146,7 @@ class Spacing(OfBodies, ScenePredicate):
         marks = [] if passed else [Mark(points=[list(a.position), list(b.position)], text=f"{least:.2f} m")]
         return Observation(passed, expected, f"{a.name} and {b.name}: {show(least)} m", f"{b.entry}.state", marks=marks)
 
-    def _apart(self, a: Body, b: Body) -> float:
+    def _apart(self, a: GradedBody, b: GradedBody) -> float:
         if self.what == "footprint":
             return float(shapely.distance(a.footprint, b.footprint))
         if self.what == "goal" and a.goal is not None and b.goal is not None:
@@ -169,7 +169,7 @@ class Beside(OfBodies, ScenePredicate):
     by: Quantity = 0.0
     """Least distance from the line [m]."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure the distances."""
         bodies, ways = material.bodies(scene, self.of), material.bodies(scene, self.way_of)
         expected = f"{self.what} of {self.of} {self.side} of the way of {self.way_of}"
@@ -212,7 +212,7 @@ class OnCircle(OfBodies, ScenePredicate):
     facing: Quantity | None = None
     """Greatest deviation of each heading from the direction to the middle [rad]."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure radii, angles and goals."""
         bodies = material.bodies(scene, self.of)
         expected = f"{self.of} on a circle of radius {show(self.radius)} m"
@@ -262,7 +262,7 @@ class Facing(OfBodies, ScenePredicate):
     away: bool = False
     """It looks the other way."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure the angles."""
         bodies = material.bodies(scene, self.of)
         where = self.toward if isinstance(self.toward, str) else show(list(self.toward))
@@ -274,7 +274,7 @@ class Facing(OfBodies, ScenePredicate):
         degrees = [(body, None if off is None else f"{math.degrees(off):.0f}° off") for body, off in wrong or angles]
         return Observation(not wrong, expected, summary(degrees), f"{wrong[0][0].entry}.state" if wrong else None)
 
-    def _off(self, material: Material, scene: Scene, body: Body) -> float | None:
+    def _off(self, material: Material, scene: GradedScene, body: GradedBody) -> float | None:
         if self.toward == "goal":
             target = None if body.goal is None else (body.goal[0], body.goal[1])
         elif isinstance(self.toward, str) and self.toward in _DIRECTIONS:

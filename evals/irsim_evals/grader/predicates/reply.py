@@ -16,7 +16,7 @@ from irsim_evals.grader.properties import value_of, yaml_path
 
 if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
-    from irsim_evals.grader.scene import Scene
+    from irsim_evals.grader.scene import GradedScene
 
 __all__ = ["Claim", "claims"]
 
@@ -67,7 +67,7 @@ class Claim:
     holds: bool | None
 
 
-def claims(reply: str, scene: Scene) -> list[Claim]:
+def claims(reply: str, scene: GradedScene) -> list[Claim]:
     """The claims of a reply about sizes, numbers, measures, drives and behaviors, each at its first mention."""
     by_words: dict[str, Claim] = {}
 
@@ -108,7 +108,7 @@ def _count(text: str) -> int:
     return _NUMBER_WORDS.index(text.lower()) if text.lower() in _NUMBER_WORDS else int(text)
 
 
-def _group_sizes(scene: Scene, role: str) -> set[int]:
+def _group_sizes(scene: GradedScene, role: str) -> set[int]:
     """How many objects the entries of a role make."""
     sizes: dict[str, int] = {}
     for body in scene.bodies:
@@ -117,7 +117,7 @@ def _group_sizes(scene: Scene, role: str) -> set[int]:
     return set(sizes.values()) | {len([s for s in sizes.values() if s == 1])}
 
 
-def _measures(scene: Scene, what: str) -> list[float]:
+def _measures(scene: GradedScene, what: str) -> list[float]:
     """Values of a measure in the world."""
     what = what.lower()
     bodies = scene.bodies

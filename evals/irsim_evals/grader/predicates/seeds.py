@@ -15,7 +15,7 @@ from irsim_evals.grader.scene import open_scene
 
 if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
-    from irsim_evals.grader.scene import Scene
+    from irsim_evals.grader.scene import GradedScene
 
 _SAME = 1e-9
 """Distance [m] between two places that counts as none."""
@@ -64,7 +64,7 @@ class Varies(OfBodies, SeedsPredicate):
             return Observation(False, f"{expected}, spread by {show(self.spread)} m", f"{show(float(spread.min()))} m")
         return Observation(True, expected, f"{len(self.seeds)} seeds differ")
 
-    def _places(self, material: Material, scene: Scene) -> Any:
+    def _places(self, material: Material, scene: GradedScene) -> Any:
         rows = []
         for body in material.bodies(scene, self.of):
             goal = body.goal[:2] if self.goals and body.goal is not None else []

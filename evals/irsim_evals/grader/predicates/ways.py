@@ -14,9 +14,9 @@ from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, middle, register
 
 if TYPE_CHECKING:
-    from irsim_evals.grader.body import Body
+    from irsim_evals.grader.body import GradedBody
     from irsim_evals.grader.material import Material
-    from irsim_evals.grader.scene import Scene
+    from irsim_evals.grader.scene import GradedScene
 
 
 @register("ways")
@@ -30,7 +30,7 @@ class Ways(OfBodies, ScenePredicate):
     distance: Match | None = None
     """Accepted values of the smallest distance between two ways [m]; 0 where they cross."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Compare all pairs."""
         bodies = _with_goals(self, material, scene)
         words = []
@@ -52,21 +52,21 @@ class Ways(OfBodies, ScenePredicate):
         return Observation(True, expected, seen)
 
 
-def _direction(body: Body) -> float:
+def _direction(body: GradedBody) -> float:
     goal = body.goal or [*body.pose]
     return math.atan2(goal[1] - body.pose[1], goal[0] - body.pose[0])
 
 
-def _with_goals(predicate: OfBodies, material: Material, scene: Scene) -> list[Body]:
+def _with_goals(predicate: OfBodies, material: Material, scene: GradedScene) -> list[GradedBody]:
     return [body for body in material.bodies(scene, predicate.of) if body.goal is not None]
 
 
-def _line(body: Body) -> shapely.LineString:
+def _line(body: GradedBody) -> shapely.LineString:
     """The straight line from the start of a body to its last goal."""
     return shapely.LineString([body.pose[:2], (body.goal or [*body.pose])[:2]])
 
 
-def _mark(body: Body) -> Mark:
+def _mark(body: GradedBody) -> Mark:
     return Mark(points=[list(point) for point in _line(body).coords], text=body.name)
 
 
@@ -79,7 +79,7 @@ class LineOfSight(OfBodies, ScenePredicate):
     clear: bool
     """Whether the line is free of everything solid, or not."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Draw the lines."""
         expected = f"from each of {self.of} to its goal the view is {'clear' if self.clear else 'blocked'}"
         clear = [
@@ -100,7 +100,7 @@ class LinePasses(OfBodies, ScenePredicate):
     distance: Match
     """Accepted distances of the line from that middle [m]."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure."""
         bodies, others = _with_goals(self, material, scene), material.bodies(scene, self.by)
         expected = f"the way of {self.of} passes the middle of {self.by} at {self.distance.words()} m"
@@ -127,7 +127,7 @@ class Reachable(OfBodies, ScenePredicate):
     plug: tuple[Quantity, Quantity, Quantity] | None = None
     """x, y, radius of a disc that closes a gap first [m]."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Search for paths."""
         bodies = [body for body in material.bodies(scene, self.of) if body.goals or self.to is not None]
         closed = "" if self.plug is None else f" with the gap at ({self.plug[0]:g}, {self.plug[1]:g}) closed"
@@ -139,16 +139,16 @@ class Reachable(OfBodies, ScenePredicate):
         marks = [Mark(points=[list(place)], text=body.name) for body, _ in wrong for place in self._targets(body)]
         return judged(expected, results, wrong, "goal", said="a path for ", marks=marks)
 
-    def _gets_there(self, scene: Scene, body: Body, plugs: tuple[tuple[float, float, float], ...]) -> bool:
+    def _gets_there(self, scene: GradedScene, body: GradedBody, plugs: tuple[tuple[float, float, float], ...]) -> bool:
         radius = disc_radius(body, self.size)
         places = [(body.pose[0], body.pose[1]), *self._targets(body)]
         return all(scene.is_reachable(a, b, radius, plugs) for a, b in itertools.pairwise(places))
 
-    def _targets(self, body: Body) -> list[tuple[float, float]]:
+    def _targets(self, body: GradedBody) -> list[tuple[float, float]]:
         return [(goal[0], goal[1]) for goal in body.goals] if self.to is None else [self.to]
 
 
-def disc_radius(body: Body, size: Literal["inner", "outer"] = "inner") -> float:
+def disc_radius(body: GradedBody, size: Literal["inner", "outer"] = "inner") -> float:
     """Radius of the disc that stands for a body [m]."""
     if body.radius is not None:
         return body.radius

@@ -13,7 +13,7 @@ from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePred
 
 if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
-    from irsim_evals.grader.scene import Scene
+    from irsim_evals.grader.scene import GradedScene
 
 WORLD_KINDS: dict[str, Kind] = {
     "width": "length",
@@ -63,7 +63,7 @@ class World(ScenePredicate):
                 raise ValueError(f"no property of the world is called {name!r}; there are {', '.join(WORLD_KINDS)}")
         return self
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Compare them."""
         values = {name: _value(scene, name) for name in self.has}
         off = [name for name, match in self.has.items() if not matches(match, values[name], WORLD_KINDS[name])]
@@ -72,7 +72,7 @@ class World(ScenePredicate):
         return Observation(not off, expected, observed, f"world.{_KEYS.get(off[0], off[0])}" if off else None)
 
 
-def _value(scene: Scene, name: str) -> Any:
+def _value(scene: GradedScene, name: str) -> Any:
     world = scene.world
     if name in ("left", "bottom"):
         return scene.bounds[0 if name == "left" else 1]
@@ -95,7 +95,7 @@ class Fill(ScenePredicate):
     seed: Match | None = None
     """Accepted seeds of the map."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Look at the cells."""
         options, grid = scene.world.obstacle_map, scene.env.scenario.grid
         seen = {
@@ -136,7 +136,7 @@ class Plan(ScenePredicate):
     tol: Quantity = 0.1
     """Greatest distance between an outline and the drawn one [m]."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Compare the areas."""
         wanted = self._wanted()
         expected = f"solid as in the drawing ({show(float(wanted.area))} m²), outlines within {show(self.tol)} m"
@@ -200,7 +200,7 @@ class Crowding(OfBodies, ScenePredicate):
     per_10_m2: Match | None = None
     """Accepted numbers for each 10 m²."""
 
-    def observe(self, material: Material, scene: Scene) -> Observation:
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Add up the areas."""
         x0, y0, x1, y1 = scene.bounds
         area = (x1 - x0) * (y1 - y0)

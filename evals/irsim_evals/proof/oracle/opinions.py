@@ -17,7 +17,7 @@ import irsim
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.matching import TOLERANCES, Match
-from irsim_evals.proof.oracle.shapes import Point, Thing, apart, blocked, gets_there, to_point
+from irsim_evals.proof.oracle.shapes import Point, Thing, blocked, distance_between, gets_there, to_point
 
 __all__ = ["JUDGED", "opinions"]
 
@@ -230,7 +230,7 @@ class _Look:
         elif said.what == "goal":
             distances = [to_point(other, point) for other in rest]
         else:
-            distances = [max(0.0, apart(thing, other)) for other in rest]
+            distances = [max(0.0, distance_between(thing, other)) for other in rest]
         if not distances:
             return math.inf
         return max(distances) if said.farthest else min(distances)
@@ -240,7 +240,7 @@ class _Look:
         if said.what == "goal":
             raise _Unknown
         distances = [
-            max(0.0, apart(a, b)) if said.what == "footprint" else math.dist(a.middle, b.middle)
+            max(0.0, distance_between(a, b)) if said.what == "footprint" else math.dist(a.middle, b.middle)
             for a, b in itertools.combinations(things, 2)
         ]
         return bool(distances) and _accepts(said.distance, min(distances), "length")
@@ -307,7 +307,7 @@ class _Look:
             self.env.step()
             for thing, other in itertools.product(things, others):
                 if thing is not other and id(thing) not in hit:
-                    gap = apart(thing, other)
+                    gap = distance_between(thing, other)
                     closest = min(closest, abs(gap))
                     if gap <= 0:
                         hit.add(id(thing))

@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Iterator
 from typing import Any
 
-__all__ = ["Thing", "apart", "blocked", "contains", "gets_there", "segments"]
+__all__ = ["Thing", "blocked", "contains", "distance_between", "gets_there", "segments"]
 
 Point = tuple[float, float]
 _MAX_CELLS = 6000
@@ -116,14 +116,14 @@ def to_point(thing: Thing, point: Point) -> float:
     return min(_to_segment(point, a, b) for a, b in segments(thing))
 
 
-def apart(a: Thing, b: Thing) -> float:
+def distance_between(a: Thing, b: Thing) -> float:
     """Distance from edge to edge [m]; negative for discs that overlap, 0 for other shapes that do."""
     if a.radius is not None and b.radius is not None:
         return math.dist(a.at[:2], b.at[:2]) - a.radius - b.radius
     if a.radius is not None:
         return to_point(b, a.at[:2]) - a.radius
     if b.radius is not None:
-        return apart(b, a)
+        return distance_between(b, a)
     if any(_cross(*one, *other) for one in segments(a) for other in segments(b)):
         return 0.0
     if contains(a, b.corners[0]) or contains(b, a.corners[0]):

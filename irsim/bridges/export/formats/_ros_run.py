@@ -10,7 +10,7 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.bridges.export.episode import Block, Episode
+from irsim.bridges.export.episode import Block, ExportedEpisode
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.outgoing import body_markers
 from irsim.bridges.ros.topics import nanoseconds, ros_names
@@ -45,7 +45,7 @@ class Bag(Protocol):
         """Add facts and files."""
 
 
-def write_run(episode: Episode, bag: Bag, messages: Messages) -> list[str]:
+def write_run(episode: ExportedEpisode, bag: Bag, messages: Messages) -> list[str]:
     """Write the messages of a run in the order of their stamps; returns notes on what was left out."""
     notes = []
     facts = episode.facts
@@ -69,7 +69,7 @@ def write_run(episode: Episode, bag: Bag, messages: Messages) -> list[str]:
 class _Writer:
     """Topics and frames of a run; actors and lidars in their order, None for obstacles."""
 
-    def __init__(self, episode: Episode, bag: Bag, messages: Messages) -> None:
+    def __init__(self, episode: ExportedEpisode, bag: Bag, messages: Messages) -> None:
         self.episode, self.bag, self.messages = episode, bag, messages
         self.events = deque(episode.run.events)
         names = ros_names(actor.name for actor in episode.actors)

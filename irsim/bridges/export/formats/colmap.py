@@ -16,22 +16,22 @@ from pathlib import Path
 import numpy as np
 
 from irsim.bridges.export.cameras import (
+    CameraFrame,
     CameraOptions,
     CameraPath,
-    Scene,
     camera_paths,
     camera_to_world,
     picture_names,
     scene_of,
 )
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.frames import inverse, quaternion_of
 
 __all__ = ["FORMAT"]
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write the three files."""
     [episode] = episodes
     options = episode.options
@@ -47,7 +47,7 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     return list(scene.notes)
 
 
-def _images(paths: list[CameraPath], options: CameraOptions, scene: Scene) -> Iterator[str]:
+def _images(paths: list[CameraPath], options: CameraOptions, scene: CameraFrame) -> Iterator[str]:
     """Yield the lines of the pictures."""
     number = 0
     for path, names in zip(paths, picture_names(paths), strict=True):

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.bridges.solids import Box, solids_of
@@ -34,7 +34,7 @@ _THICKNESS = 0.05
 """Of legs of lines, which are outside of the rooms that closed lines are the walls of [m]."""
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write the scenario of a run."""
     from commonroad.common.common_scenario import Location
     from commonroad.common.file_writer import CommonRoadFileWriter
@@ -74,7 +74,7 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     return [] if scene.grid is None else ["the map was left out: CommonRoad has no grids"]
 
 
-def _tracks(episode: Episode, moving: Sequence[SceneObject]) -> tuple[list[int], list[Floats]]:
+def _tracks(episode: ExportedEpisode, moving: Sequence[SceneObject]) -> tuple[list[int], list[Floats]]:
     """Steps, and (T, 4) x, y [m], yaw [rad], speed [m/s] of each agent that moves."""
     steps: list[int] = []
     rows: list[Floats] = []

@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 
 from irsim.bridges.export.columns import Cells, Ranges, Words, columns_of, table_parts
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.common.text import cell
 
 __all__ = ["FORMAT"]
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write one line for each row of the table."""
     columns = columns_of(episodes)
     with open(target, "w", encoding="utf-8", newline="") as file:

@@ -18,7 +18,7 @@ import numpy as np
 import shapely
 from pydantic import Field
 
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.usd.solids import prim_names
 from irsim.common.arrays import Floats
@@ -40,7 +40,7 @@ class PeopleOptions(Options):
     """Height of the ground."""
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write the commands of one run: who is there, then what each of them does."""
     [episode] = episodes
     options = episode.options

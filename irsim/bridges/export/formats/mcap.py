@@ -24,7 +24,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.formats._ros_run import write_run
 from irsim.bridges.export.registry import Format
 from irsim.bridges.ros.messages import Messages
@@ -109,7 +109,7 @@ class Bag:
             self._writer.add_attachment(0, 0, name, kind, content)
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write the messages of a run."""
     [episode] = episodes
     messages = Messages(extra="records")

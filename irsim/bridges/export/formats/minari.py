@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.bridges.export.episode import Actor, Block, Episode
+from irsim.bridges.export.episode import Actor, Block, ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.common.angles import wrap
 from irsim.common.installed import version
@@ -60,7 +60,7 @@ class _Learner:
         over: Whether its last step has been written.
     """
 
-    run: Episode
+    run: ExportedEpisode
     actor: Actor
     column: int
     scans: list[tuple[str, float]]
@@ -70,7 +70,7 @@ class _Learner:
     over: bool = field(default=False)
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write all episodes, block by block; episodes of one run are written side by side."""
     from minari.data_collector.episode_buffer import EpisodeBuffer
     from minari.dataset.minari_storage import MinariStorage
@@ -109,7 +109,7 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     return notes
 
 
-def _learners(episodes: Sequence[Episode]) -> tuple[list[_Learner], list[str]]:
+def _learners(episodes: Sequence[ExportedEpisode]) -> tuple[list[_Learner], list[str]]:
     """The robots with a goal, and notes on the robots without one."""
     learners, notes = [], []
     for episode in episodes:
@@ -231,7 +231,7 @@ def _episode_metadata(learner: _Learner) -> dict[str, Any]:
     }
 
 
-def _metadata(name: str, episodes: Sequence[Episode]) -> dict[str, Any]:
+def _metadata(name: str, episodes: Sequence[ExportedEpisode]) -> dict[str, Any]:
     """Metadata of the dataset; a description that is the same for all its episodes."""
     from importlib.metadata import version as version_of
 
@@ -245,7 +245,7 @@ def _metadata(name: str, episodes: Sequence[Episode]) -> dict[str, Any]:
     }
 
 
-def _behaviors(episodes: Sequence[Episode]) -> Iterator[str]:
+def _behaviors(episodes: Sequence[ExportedEpisode]) -> Iterator[str]:
     for episode in episodes:
         for actor in episode.actors:
             behavior = actor.facts.get("behavior")

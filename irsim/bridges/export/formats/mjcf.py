@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.mujoco.mjcf import is_mocap, write_mjcf
 from irsim.bridges.mujoco.robots import default_agents
@@ -19,7 +19,7 @@ from irsim.components.bridges.mujoco import Mujoco
 __all__ = ["FORMAT"]
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write the model."""
     [episode] = episodes
     scene = recorded_scene(episode.run, episode.limits)

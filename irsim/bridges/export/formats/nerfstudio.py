@@ -16,13 +16,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from irsim.bridges.export.cameras import CameraOptions, camera_paths, camera_to_world, picture_names, scene_of
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.registry import Format
 
 __all__ = ["FORMAT"]
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write the dataset and the paths."""
     [episode] = episodes
     options = episode.options

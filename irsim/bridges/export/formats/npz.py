@@ -18,7 +18,7 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from irsim.bridges.export.episode import Block, Episode
+from irsim.bridges.export.episode import Block, ExportedEpisode
 from irsim.bridges.export.registry import Format
 
 __all__ = ["FORMAT"]
@@ -45,7 +45,7 @@ _TRACE: Mapping[str, Callable[[Block], NDArray[Any]]] = {
 }
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write one array after the other; the run is read once for each, so that it need not fit in memory."""
     [episode] = episodes
     about = {"units": _UNITS, "run": episode.facts}

@@ -20,7 +20,7 @@ from xml.sax.xmlreader import AttributesImpl
 
 import numpy as np
 
-from irsim.bridges.export.episode import Actor, Episode
+from irsim.bridges.export.episode import Actor, ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.recorded import recorded_scene
 from irsim.bridges.solids import box_of
@@ -98,7 +98,7 @@ def _text(value: object) -> str:
     return _NOT_XML.sub("\ufffd", str(value))
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write one run."""
     (episode,) = episodes
     vertices = (episode.last_step + 1) * len(episode.actors)
@@ -134,7 +134,7 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     return notes + _notes(episode, shown, present, options)
 
 
-def _notes(episode: Episode, shown: list[int], present: list[Any], options: OpenScenarioOptions) -> list[str]:
+def _notes(episode: ExportedEpisode, shown: list[int], present: list[Any], options: OpenScenarioOptions) -> list[str]:
     notes = [] if options.roads else ["no roads are named: give the option roads, a file of OpenDRIVE or a town"]
     absent = [actor.name for column, actor in enumerate(episode.actors) if column not in shown]
     late = [episode.actors[column].name for column in shown if not present[column].all()]
@@ -145,7 +145,7 @@ def _notes(episode: Episode, shown: list[int], present: list[Any], options: Open
     return notes
 
 
-def _trajectories(episode: Episode) -> tuple[Floats, Floats]:
+def _trajectories(episode: ExportedEpisode) -> tuple[Floats, Floats]:
     """(T,) times [s] and (T, M, 3) poses whose headings do not jump at half a turn."""
     times, poses = [], []
     for block in episode.blocks(scans=False):
@@ -166,7 +166,7 @@ def _moved(poses: Floats, options: OpenScenarioOptions) -> Floats:
     return np.stack(moved, axis=-1)
 
 
-def _header(writer: _Writer, episode: Episode, roads: str) -> None:
+def _header(writer: _Writer, episode: ExportedEpisode, roads: str) -> None:
     created = str(episode.run.meta.get("created") or "2000-01-01T00:00:00")[:19]
     about = f"run {episode.run.id} of irsim {version()}, seed {episode.run.meta['seed']}"
     writer.leaf("FileHeader", revMajor=1, revMinor=0, date=created, description=about, author="irsim")
@@ -238,7 +238,7 @@ def _after(writer: _Writer, name: str, time: float) -> None:
 
 
 def _story(
-    writer: _Writer, episode: Episode, moving: list[int], times: Floats, poses: Floats, present: list[Any]
+    writer: _Writer, episode: ExportedEpisode, moving: list[int], times: Floats, poses: Floats, present: list[Any]
 ) -> None:  # fmt: skip
     """One act, in which each object follows its trajectory; without any that moves, one without actions."""
     with writer.element("Story", name="run"), writer.element("Act", name="run"):

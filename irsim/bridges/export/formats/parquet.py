@@ -22,14 +22,14 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.export.columns import Cells, Column, Ranges, Words, columns_of, table_parts
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.common.installed import version
 
 __all__ = ["FORMAT"]
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write a row group for each part of the table, so that only one part is in memory."""
     import pyarrow as pa
     import pyarrow.parquet as pq

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from irsim.bridges.export.cameras import PoseOptions, camera_paths, camera_to_world, scene_of
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.frames import axes_of
 
@@ -25,7 +25,7 @@ __all__ = ["FORMAT"]
 _FRAME = "habitat_yup"
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write the lines."""
     [episode] = episodes
     options = episode.options

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.formats._ros_run import write_run
 from irsim.bridges.export.registry import Format
 from irsim.bridges.ros.backends.bag import BagFolder
@@ -27,7 +27,7 @@ class BagOptions(Options):
     """`sqlite3` opens in all releases of ROS 2, `mcap` is the default of recent ones and opens in Foxglove."""
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write the messages of a run."""
     [episode] = episodes
     messages = Messages(extra="bag")

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.bridges.sdf import SdfWorld
@@ -28,7 +28,7 @@ _STILL = 1e-6
 """Obstacles that stay within this distance and angle of their start are static models [m, rad]."""
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write the folder."""
     [episode] = episodes
     scene = recorded_scene(episode.run, episode.limits)

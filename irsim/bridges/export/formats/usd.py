@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.episode import ExportedEpisode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.bridges.state import WorldState
@@ -17,7 +17,7 @@ from irsim.bridges.state import WorldState
 __all__ = ["FORMAT"]
 
 
-def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write the scene of a run, and where its objects were."""
     from irsim.bridges.usd.files import make_stage, save_stage
 
@@ -28,7 +28,7 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     return []
 
 
-def _states(episode: Episode) -> Iterator[WorldState]:
+def _states(episode: ExportedEpisode) -> Iterator[WorldState]:
     for state in recorded_states(episode.run, limits=episode.limits):
         yield state
         episode.progress(1)

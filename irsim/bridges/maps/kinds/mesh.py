@@ -10,7 +10,7 @@ import numpy as np
 
 from irsim.bridges.maps.apart import read_apart
 from irsim.bridges.maps.grid import Triangles, turned
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, SceneTriangles, unusable
 
 __all__ = ["KIND", "read_triangles"]
 
@@ -59,7 +59,7 @@ def read_triangles(path: Path, limits: ImportLimits, root: str | None = None) ->
     return _checked(path, triangles), said
 
 
-def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
+def read(path: Path, options: ImportOptions, limits: ImportLimits) -> SceneTriangles:
     """Triangles of a mesh file.
 
     Raises:
@@ -86,7 +86,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     unit = options.meters_per_unit or float(said["unit"])
     if unit != 1.0:
         triangles = triangles.astype(np.float64) * unit
-    return Scene(_FRAMES[up], triangles, meters_per_unit=unit, notes=notes, turn=turn)
+    return SceneTriangles(_FRAMES[up], triangles, meters_per_unit=unit, notes=notes, turn=turn)
 
 
 def _checked(path: Path, triangles: Triangles) -> Triangles:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.bridges.maps.grid import spread
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, SceneTriangles, unusable
 from irsim.common.arrays import Floats
 
 __all__ = ["KIND", "Tile", "read_tiles"]
@@ -150,7 +150,7 @@ def _triangles(
     return result
 
 
-def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
+def read(path: Path, options: ImportOptions, limits: ImportLimits) -> SceneTriangles:
     """Floors of a navigation mesh.
 
     Raises:
@@ -171,7 +171,9 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
             f"its floors keep {radius:.2f} m from obstacles already, and robots keep clear of them in addition"
         )
     height, climb = max(tile.height for tile in tiles), max(tile.climb for tile in tiles)
-    return Scene("habitat_yup", floors=floors, headroom=height or None, climb=climb, radius=radius, notes=notes)
+    return SceneTriangles(
+        "habitat_yup", floors=floors, headroom=height or None, climb=climb, radius=radius, notes=notes
+    )
 
 
 KIND = Kind(

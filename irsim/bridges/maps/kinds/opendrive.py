@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from irsim.bridges.maps.grid import Ints, Triangles
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, SceneTriangles, unusable
 from irsim.bridges.maps.xml_files import read_xml
 from irsim.common.arrays import Floats
 
@@ -268,7 +268,7 @@ _CLIMB = 0.3
 """Difference of height between lanes side by side that is one level [m]."""
 
 
-def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
+def read(path: Path, options: ImportOptions, limits: ImportLimits) -> SceneTriangles:
     """Lanes of all roads.
 
     Raises:
@@ -293,7 +293,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
         listed = ", ".join(sorted(seen)) or "none"
         raise unusable(path, f"it has no lanes to {options.lanes}; its lanes are: {listed}", "try --lanes all")
     notes = [] if options.lanes == "all" else [f"free are lanes to {options.lanes}; others are occupied"]
-    return Scene(
+    return SceneTriangles(
         "irsim",
         floors=np.concatenate(free),
         barred=np.concatenate(barred) if barred else np.zeros((0, 3, 3)),

@@ -16,7 +16,7 @@ from irsim.bridges.frames import axes_of
 from irsim.bridges.maps import slices
 from irsim.bridges.maps.apart import read_apart
 from irsim.bridges.maps.grid import Triangles, turned
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, Scene, unusable
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Outlined, Outlines, SceneTriangles, unusable
 from irsim.common.archives import opened_archive
 from irsim.common.records import ContentError
 from irsim.common.text import clean
@@ -31,7 +31,7 @@ _LISTED = 5
 """Names that a note lists."""
 
 
-def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene | Outlines:
+def read(path: Path, options: ImportOptions, limits: ImportLimits) -> SceneTriangles | Outlines:
     """Triangles of the meshes and boxes of a stage that are visible, at the earliest time.
 
     Of a stage that irsim wrote, outlines of the map and of obstacles that do not drive or walk.
@@ -56,7 +56,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene | Ou
     exact = answer["own"] is not None and turn is None and len(triangles) <= _MAX_OUTLINED
     outlines = _outlines(triangles, answer["own"], options) if exact else None
     if outlines is None or not outlines.things:
-        return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"], turn=turn)
+        return SceneTriangles(frame, triangles, meters_per_unit=scale, notes=answer["notes"], turn=turn)
     given = next((name for name in ("level", "ground") if getattr(options, name) is not None), None)
     if given is not None:
         raise unusable(path, "irsim wrote it, and it has one floor, the ground", f"leave out --{given}")
