@@ -296,7 +296,7 @@ def interop(session: nox.Session) -> None:
 @nox.session(reuse_venv=True, python=find_python(INTEROP))
 def nightly(session: nox.Session) -> None:
     """Stages of OpenUSD, read by Blender, which is 947 MB, and a tenth of avoidance. No part of ``full``."""
-    install(session, "-e", ".[test,usd,records]")
+    install(session, "-e", ".[test,usd,records,bag,mesh,plans]")
     blender = Path(session.virtualenv.location, "blender").resolve() / "bin" / "python"
     if not blender.exists():
         session.run("python", "-m", "venv", str(blender.parents[1]))
@@ -310,6 +310,8 @@ def nightly(session: nox.Session) -> None:
     timed(session, "tests that rotate", "pytest", *rotating, env={"IRSIM_TESTS": "thorough"})
     damaged = ("-m", "slow", "-n", "2", "tests/fuzz/damaged", "--durations", "5")
     timed(session, "10,000 damages of each kind of file", "pytest", *damaged, env={"IRSIM_NIGHTLY": "1"})
+    damaged = ("-m", "interop", "-n", "2", "tests/interop/test_damaged_files.py", "--durations", "5")
+    timed(session, "1,667 to 10,000 damages of other kinds", "pytest", *damaged, env={"IRSIM_NIGHTLY": "1"})
     raced = ("-m", "slow", "-n", "2", "tests/mcp/test_links.py")
     timed(session, "2,000 races with links", "pytest", *raced, env={"IRSIM_NIGHTLY": "1"})
     session.notify("neupan")

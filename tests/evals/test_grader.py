@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import math
 import os
 import time
@@ -11,6 +12,7 @@ import pytest
 
 from irsim_evals.cases.store import case_ids, case_of, golds_of, raw_case, substitute
 from irsim_evals.cli.cases import schema_text
+from irsim_evals.grader import limited
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.hues import discernible
@@ -163,6 +165,15 @@ def test_a_grading_has_limits(kind: str, most: int) -> None:
     import resource
 
     assert run_limited(resource.getrlimit, (getattr(resource, f"RLIMIT_{kind}"),), 10, "asking")[0] == most
+
+
+def test_a_process_that_cannot_start_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(self: object) -> None:
+        raise OSError(errno.EAGAIN, "no more processes")
+
+    monkeypatch.setattr(type(limited._context().Process()), "start", full)
+    with pytest.raises(OSError, match="no more processes"):
+        run_limited(abs, (1,), 10, "work")
 
 
 def test_an_empty_answer_fails_every_case() -> None:

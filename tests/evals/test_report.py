@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import time
 from collections.abc import Sequence
@@ -162,6 +163,12 @@ def test_funnel_and_cost() -> None:
     passed = [summary.funnel[stage].passed for stage in ("sane", "facts", "relations", "behavior", "reply")]
     assert passed == [3, 2, 2, 1, 1]
     assert (summary.cost.known, summary.cost.per_pass) == (2, {"tokens": 400})
+
+
+def test_costs_that_cannot_be_are_left_out() -> None:
+    costs = [Cost(tokens=10**400), Cost(tokens=5, seconds=math.inf), Cost(tokens=7, dollars=1e308)]
+    summary = summarize([trial(str(k), True, cost=cost) for k, cost in enumerate(costs)], "skill")
+    assert summary.cost.totals == {"tokens": 12}
 
 
 def test_lines_of_a_path() -> None:

@@ -180,8 +180,9 @@ class Worker:
     def _start(self) -> None:
         context = _context()
         self._pipe, there = context.Pipe()
-        self._process = context.Process(target=_do_jobs, args=(there, self._cpu_seconds), daemon=True)
-        self._process.start()
+        process = context.Process(target=_do_jobs, args=(there, self._cpu_seconds), daemon=True)
+        process.start()  # a process that did not start cannot be ended
+        self._process = process
         there.close()
 
 

@@ -91,7 +91,7 @@ class Verdict(Record):
     """Last stage of the funnel in which nothing failed before it."""
     outcomes: list[Outcome]
     cost: Cost = Cost()
-    seconds: float = 0.0
+    seconds: float = Field(default=0.0, ge=0, le=1e9)
     """How long the grading took."""
     files: dict[str, str] = {}
     """The files that were graded."""

@@ -12,6 +12,9 @@ from irsim_evals.statistics import Interval, mean_pass_hat_k, wilson
 
 __all__ = ["ArmSummary", "Cell", "CostSummary", "Table", "arms_of", "attempts", "summarize", "table_by"]
 
+MAX_COST = 1e15
+"""Numbers of a cost from which on they are damaged, and are left out."""
+
 
 @dataclass(frozen=True)
 class Cell:
@@ -174,4 +177,4 @@ def _cost(trials: Sequence[Trial]) -> CostSummary:
 def _quantities(trial: Trial) -> dict[str, float | None]:
     """The numbers among the fields of a cost."""
     fields = trial.verdict.cost.model_dump()
-    return {k: v for k, v in fields.items() if v is None or (isinstance(v, (int, float)) and math.isfinite(v))}
+    return {k: v for k, v in fields.items() if v is None or (isinstance(v, (int, float)) and abs(v) < MAX_COST)}

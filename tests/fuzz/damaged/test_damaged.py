@@ -19,6 +19,7 @@ import pytest
 
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.diagnostics.errors import CodedError, ScenarioError, ScenarioNotFoundError
+from tests.fuzz.damaged.kind import Kind
 from tests.fuzz.damaged.kinds import KINDS
 from tests.fuzz.damaged.ways import damaged
 
@@ -35,7 +36,7 @@ _MOST_MEMORY = 1 << 30
 @pytest.mark.parametrize("name", KINDS)
 def test_some_damages(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    try_ways(name, tmp_path, range(max(1, QUICK // KINDS[name].share)))
+    try_ways(name, KINDS[name], tmp_path, range(max(1, QUICK // KINDS[name].share)))
 
 
 @pytest.mark.slow(30)
@@ -43,12 +44,11 @@ def test_some_damages(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 def test_many_damages(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     ways = NIGHT if os.environ.get("IRSIM_NIGHTLY") else GATE
-    try_ways(name, tmp_path, range(0, ways, KINDS[name].share))
+    try_ways(name, KINDS[name], tmp_path, range(0, ways, KINDS[name].share))
 
 
-def try_ways(name: str, folder: Path, numbers: range) -> None:
+def try_ways(name: str, kind: Kind, folder: Path, numbers: range) -> None:
     """Read an example in each of some ways of being damaged, a missing file and a folder."""
-    kind = KINDS[name]
     file = kind.make(folder)
     content, before = file.read_bytes(), memory()
     kind.read(file, random.Random(0))  # it is sound

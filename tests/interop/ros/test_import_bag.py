@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import shlex
+import time
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -122,6 +123,18 @@ def test_what_is_no_bag_is_an_error_with_nothing_written(bag: Path, damage: str)
     assert not Path("none.png").exists()
 
 
+def test_metadata_beyond_all_bags_are_refused_at_once(bag: Path) -> None:
+    metadata = bag / "metadata.yaml"
+    for more in ("x: [" + "1, " * 400_000 + "]\n", "x: " + "[" * 900 + "]" * 900 + "\n"):
+        text = metadata.read_text()
+        metadata.write_text(text + more)
+        start = time.process_time()
+        with pytest.raises(BridgeError, match="not a bag that can be read"):
+            import_bag(bag, "none.yaml")
+        assert time.process_time() - start < 5
+        metadata.write_text(text)
+
+
 def test_odometry_that_is_not_finite_is_left_out() -> None:
     poses = [(math.nan if step == 7 else 0.1 * step, 0.0, 0.0) for step in range(30)]
     write_odometry(poses, 1.0, 100_000_000, 100_000_000)
@@ -229,14 +242,15 @@ def test_a_log_of_others_becomes_a_map_with_its_walls(foreign: Path) -> None:
     assert (grey == 0).sum() > 5000  # its walls
 
 
-def test_a_bag_of_ros_1() -> None:
+def write_first_bag(file: Path) -> None:
+    """A bag of ROS 1: a robot drives straight on for a second."""
     from rosbags.rosbag1 import Writer
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS1_NOETIC)
     types = {name.split("/")[-1]: made for name, made in store.types.items() if name.startswith(("geometry_", "std_"))}
     kind = "nav_msgs/msg/Odometry"
-    with Writer(Path("drive.bag")) as bag:
+    with Writer(file) as bag:
         topic = bag.add_connection("/odom", kind, typestore=store)
         for step in range(20):
             stamp = store.types["builtin_interfaces/msg/Time"](1, 50_000_000 * step)
@@ -248,6 +262,10 @@ def test_a_bag_of_ros_1() -> None:
                 types["TwistWithCovariance"](types["Twist"](zero, zero), np.zeros(36)),
             )  # fmt: skip
             bag.write(topic, 10**9 + 50_000_000 * step, store.serialize_ros1(message, kind))
+
+
+def test_a_bag_of_ros_1() -> None:
+    write_first_bag(Path("drive.bag"))
     imported = import_bag("drive.bag", "s.yaml", BagOptions(step_time=0.05))
     assert (imported.poses, imported.duration) == (20, pytest.approx(0.95))
     assert irsim.run("s.yaml").robots[0].path_length == pytest.approx(0.95, abs=0.06)

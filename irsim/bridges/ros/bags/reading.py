@@ -17,6 +17,7 @@ from irsim.bridges.ros.messages import MAX_SEQUENCE
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
 from irsim.common.text import clean
+from irsim.common.yaml.plain import read_plain_yaml
 
 __all__ = ["Recorded", "read_bag"]
 
@@ -133,7 +134,10 @@ def _opened(path: Path) -> Iterator[Any]:
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
+    metadata = path / "metadata.yaml"
     try:
+        if metadata.is_file():
+            read_plain_yaml(metadata)  # rosbags reads it without limits
         with AnyReader([path], default_typestore=store) as reader:
             reader.typestore.max_sequence_length = MAX_SEQUENCE
             yield reader
