@@ -11,9 +11,14 @@ from typing import NamedTuple
 __all__ = ["Address", "HttpRefused", "address", "allowed_hosts", "anywhere", "host_of", "why_refused"]
 
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
-_AUTHORITY = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(?::[0-9]{1,5})?")
+_LABELS = r"[A-Za-z0-9_-]+(?:\.[A-Za-z0-9_-]+)*\.?"
+_ZONE = r"%(?:25)?[A-Za-z0-9._~-]+"
+"""The end of an address that is valid on one network only; clients send it or leave it out."""
+_AUTHORITY = re.compile(rf"(\[[0-9A-Fa-f:.]+(?:{_ZONE})?\]|{_LABELS})(?::[0-9]{{1,5}})?")
 _ORIGIN = re.compile(rf"https?://({_AUTHORITY.pattern})", re.IGNORECASE)
 _NUMBERS = re.compile(r"[0-9][0-9a-fx.]*")
+_NUMBER_LAST = re.compile(r"(.*\.)?([0-9]+|0x[0-9a-f]*)")
+"""What only an address may look like."""
 
 
 class HttpRefused(ValueError):
@@ -29,10 +34,8 @@ class Address(NamedTuple):
     @property
     def loopback(self) -> bool:
         """Whether only this machine can connect."""
-        try:
-            return self.host == "localhost" or ipaddress.ip_address(self.host).is_loopback
-        except ValueError:
-            return False
+        known = _parsed(self.host)
+        return self.host == "localhost" or (known is not None and known.is_loopback)
 
     @property
     def name(self) -> str:
@@ -61,9 +64,8 @@ def host_of(text: str) -> str:
     ``0`` is 0.0.0.0, ``127.1`` is 127.0.0.1, and ``::ffff:1.2.3.4``, which reaches the same clients, is 1.2.3.4.
     """
     host = text.lower().removeprefix("[").removesuffix("]").removesuffix(".")
-    try:
-        known = ipaddress.ip_address(host)
-    except ValueError:
+    known = _parsed(host)
+    if known is None:
         if not _NUMBERS.fullmatch(host):
             return host
         try:
@@ -84,10 +86,8 @@ def anywhere(where: Address) -> bool:
 
 
 def _unspecified(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_unspecified
-    except ValueError:
-        return False
+    known = _parsed(host)
+    return known is not None and known.is_unspecified
 
 
 def allowed_hosts(where: Address, names: Sequence[str]) -> frozenset[str]:
@@ -103,12 +103,26 @@ def allowed_hosts(where: Address, names: Sequence[str]) -> frozenset[str]:
     more = []
     for name in names:
         match = _AUTHORITY.fullmatch(name) or _AUTHORITY.fullmatch(f"[{name}]")
-        host = host_of(match[1]) if match is not None else ""
-        if not host or _unspecified(host):
+        host = _named(match)
+        if not host or _unspecified(host) or (_NUMBER_LAST.fullmatch(host) and _parsed(host) is None):
             raise HttpRefused(f"--allow-host {name!r}: give a name or an address that clients connect to")
         more.append(host)
     own = _LOOPBACK if where.loopback else ()
-    return frozenset((*own, where.host, *more))
+    return frozenset((*own, where.host.partition("%")[0], *more)) - {""}
+
+
+def _named(match: re.Match[str] | None, group: int = 1) -> str:
+    """The host that a matched text names, without its zone; empty if it names none."""
+    host = "" if match is None else host_of(re.sub(_ZONE, "", match[group]))
+    return "" if match is not None and match[group].startswith("[") and _parsed(host) is None else host
+
+
+def _parsed(host: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
+    """The address that a host is; None for a name."""
+    try:
+        return ipaddress.ip_address(host)
+    except ValueError:
+        return None
 
 
 def why_refused(headers: Iterable[tuple[bytes, bytes]], allowed: frozenset[str]) -> tuple[int, str] | None:
@@ -123,12 +137,10 @@ def why_refused(headers: Iterable[tuple[bytes, bytes]], allowed: frozenset[str])
     hosts, origins = ([v.decode("latin-1") for n, v in headers if n == name] for name in (b"host", b"origin"))
     if len(hosts) > 1:
         return 400, "Several Host headers"
-    match = _AUTHORITY.fullmatch(hosts[0]) if hosts else None
-    if match is None or host_of(match[1]) not in allowed:
+    if _named(_AUTHORITY.fullmatch(hosts[0]) if hosts else None) not in allowed:
         return 421, "Invalid Host header"
     if not origins:
         return None
-    match = _ORIGIN.fullmatch(origins[0]) if len(origins) == 1 else None
-    if match is None or host_of(match[2]) not in allowed:
+    if _named(_ORIGIN.fullmatch(origins[0]) if len(origins) == 1 else None, 2) not in allowed:
         return 403, "Invalid Origin header"
     return None

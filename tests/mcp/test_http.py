@@ -17,7 +17,7 @@ import httpx2
 import pytest
 from mcp.client.streamable_http import streamable_http_client
 
-from irsim_mcp.hosts import Address, HttpRefused, address
+from irsim_mcp.hosts import Address, HttpRefused, address, allowed_hosts, why_refused
 from irsim_mcp.http import application, token_from
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.server import build_server
@@ -237,10 +237,34 @@ def test_every_spelling_of_all_addresses_needs_names(empty: Path, monkeypatch: p
         application(build_server(empty), address(f"{text}:0"), TOKEN)
 
 
-@pytest.mark.parametrize("name", ["", "0", "0.0.0.0", "[::]", "*", "http://robots.example", "a@b", "a b"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "", "0", "0.0.0.0", "[::]", "*", "http://robots.example", "a@b", "a b", "0x0.", "00.0", "::%eth0", "[::%25eth0]",
+        "0::0.0.0.0", "..", "0..", "a..b", "4294967296", "08.0.0.1", "1.2.3.4.5", "robots.0x", "a\n", "０",
+    ],
+)  # fmt: skip
 def test_names_that_are_none(empty: Path, name: str) -> None:
     with pytest.raises(HttpRefused, match="--allow-host"):
         application(build_server(empty), Address("0.0.0.0", 80), TOKEN, [name])
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("robots.example.:80", ["robots.example", "ROBOTS.example.:9"]),
+        ("0xA.1", ["10.0.0.1", "012.0.0.1:80", "167772161", "[::ffff:a00:1]"]),
+        ("fe80::1%eth0", ["[fe80::1]", "[fe80::1%25eth0]:80", "[FE80:0::1%eth1]"]),
+        ("0a.example", ["0A.example"]),
+    ],
+)
+def test_names_have_many_spellings(name: str, said: list[str]) -> None:
+    allowed = allowed_hosts(address("[fe80::2%25lo]:80"), [name])
+    for host in (*said, "[fe80::2%lo]", "[fe80::2]:80"):
+        assert why_refused([(b"host", host.encode()), (b"origin", f"http://{host}".encode())], allowed) is None
+    assert "" not in allowed_hosts(address("[%lo]:80"), [name])
+    for host in ("", "robots.example..", "fe80::1", "[fe80::1%]", "[fe80::1%a%b]", "10.0.0.1%eth0", "[%lo]", "[..]"):
+        assert why_refused([(b"host", host.encode())], allowed) == (421, "Invalid Host header")
 
 
 @pytest.mark.parametrize(

@@ -34,6 +34,11 @@ pytestmark = [
 ]
 LIMITS = ServerLimits()
 MAPPED = ROOM.replace("world: {", "world: {obstacle_map: map.png, ")
+SITE = ROOM.replace("world: {", "world: {obstacle_map: {name: ros, path: maps/site.yaml}, ").replace(
+    "name: rover", "name: rover\n    description: car.png"
+)
+"""A scenario that names a picture, and a map of ROS, which names one."""
+ROS_MAP = "{image: site.png, resolution: 0.1, origin: [0, 0, 0], negate: 0, occupied_thresh: 0.65, free_thresh: 0.2}\n"
 CODES = {
     "path-outside-workspace", "file-not-found", "not-a-file", "invalid-scenario", "unknown-run", "unreadable-run",
     "file-access", "file-exists", "unreadable", "unknown-policy", "policy-file", "unknown-artifact",
@@ -50,6 +55,11 @@ class Place:
         (root / "exports").mkdir()
         Image.new("L", (80, 60), 255).save(root / "rooms" / "map.png")
         (root / "rooms" / "room.yaml").write_text(MAPPED, encoding="utf-8")
+        (root / "rooms" / "site.yaml").write_text(SITE, encoding="utf-8")
+        (root / "rooms" / "maps").mkdir()
+        (root / "rooms" / "maps" / "site.yaml").write_text(ROS_MAP, encoding="utf-8")
+        Image.new("L", (80, 60), 255).save(root / "rooms" / "maps" / "site.png")
+        Image.new("RGB", (12, 12), "red").save(root / "rooms" / "car.png")
         save_network(root / "net.npz", go_to_goal())
         self.workspace = Workspace(root)
         self.run_id = json.loads(self.do("run", path="rooms/room.yaml", seed=1, steps=10))["run_id"]
