@@ -241,7 +241,8 @@ def test_every_spelling_of_all_addresses_needs_names(empty: Path, monkeypatch: p
     "name",
     [
         "", "0", "0.0.0.0", "[::]", "*", "http://robots.example", "a@b", "a b", "0x0.", "00.0", "::%eth0",
-        "[::%25eth0]", "0::0.0.0.0", "..", "0..", "a..b", "4294967296", "08.0.0.1", "1.2.3.4.5", "robots.0x", "a\n", "０",
+        "[::%25eth0]", "0::0.0.0.0", "..", "0..", "a..b", "4294967296",
+        "08.0.0.1", "1.2.3.4.5", "robots.0x", "a\n", "０",
     ],
 )  # fmt: skip
 def test_names_that_are_none(empty: Path, name: str) -> None:
