@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from irsim.bridges.base import BridgeError
 from irsim.bridges.export.export import export_run
 from irsim.bridges.maps import import_map
-from tests.bridges.maps.round_trips import MAP, SHAPES, WALLS, differing_share
+from tests.bridges.maps.round_trips import LARGE_MAP, MAP, SHAPES, WALLS, differing_share
 from tests.bridges.scenes import recorded
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("usd")]
@@ -26,6 +27,14 @@ def test_scenarios_of_commonroad_come_back(scene) -> None:
 def test_stages_of_usd_come_back(scene, suffix) -> None:
     pytest.importorskip("pxr")
     assert differing_share(scene, f"out.{suffix}", to="usd", thick=0.05, wall=0.05) <= 0.01
+
+
+def test_large_stages_of_usd_come_back() -> None:
+    """Thousands of boxes keep their area, in seconds, and cells of the map are cells of the import."""
+    pytest.importorskip("pxr")
+    started = time.process_time()
+    assert differing_share(LARGE_MAP, "out.usdc", to="usd", thick=0.05, wall=0.05) <= 0.01
+    assert time.process_time() - started < 40
 
 
 def test_the_ground_of_a_stage_comes_back_and_what_moves_does_not() -> None:

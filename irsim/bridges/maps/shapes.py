@@ -90,19 +90,27 @@ def _extent(outlines: Outlines, solid: Any, options: ImportOptions) -> tuple[Any
     return low, high
 
 
-def _opened(region: Any, width: float) -> Any:
-    """The part of an area that is at least as wide as that [m]."""
-    half = 0.499 * width
+def _narrow(solid: Any, width: float) -> tuple[Any, Any]:
+    """Polygons of an area: of each the part that is at least as wide as that [m], and the rest.
+
+    One after the other, as it takes far longer for all at once.
+    """
+    parts, half = shapely.get_parts(solid), 0.499 * width
     with np.errstate(invalid="ignore"):  # corners that lie in one point
-        return region.buffer(-half, join_style="mitre").buffer(half, join_style="mitre").buffer(1e-9)
+        inner = shapely.buffer(parts, -half, join_style="mitre")
+        wide = shapely.buffer(shapely.buffer(inner, half, join_style="mitre"), 1e-9)
+    return wide, shapely.difference(parts, wide)
 
 
 def _thin_walls(solid: Any, side: float) -> list[Any]:
     """The parts of an area that are thinner than a cell, and stand by themselves rather than along a wider part."""
-    wide = _opened(solid, side)
-    near = wide.buffer(1e-6)
-    parts = [part for part in shapely.get_parts(solid.difference(wide)) if part.length > _LONG * side]
-    return [part for part in parts if part.boundary.intersection(near).length < 0.3 * part.length]
+    wide, rest = _narrow(solid, side)
+    parts, of = shapely.get_parts(rest, return_index=True)
+    long = shapely.length(parts) > _LONG * side
+    parts, of = parts[long], of[long]
+    near = shapely.buffer(wide[of], 1e-6)
+    along = shapely.length(shapely.intersection(shapely.boundary(parts), near))
+    return list(parts[along < 0.3 * shapely.length(parts)])
 
 
 def _fine_side(solid: Any, low: Any, high: Any, limits: ImportLimits) -> float:
@@ -117,7 +125,7 @@ def _fits(solid: Any, side: float) -> bool:
     """Whether no wall is thinner than a cell, and cells have the area of the outlines."""
     if solid.is_empty:
         return True
-    if solid.difference(_opened(solid, side)).area > _SHARE * solid.area:
+    if shapely.area(_narrow(solid, side)[1]).sum() > _SHARE * solid.area:
         return False
     low, high = np.split(np.array(solid.bounds), 2)
     cells = _painted(solid, grid_over(low, high, side, 1 << 40)).sum()

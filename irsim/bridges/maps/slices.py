@@ -21,6 +21,7 @@ __all__ = [
     "moved",
     "slice_of_hull",
     "slice_of_mesh",
+    "slice_of_prisms",
 ]
 
 SEGMENTS = 64
@@ -28,6 +29,10 @@ SEGMENTS = 64
 _RINGS = 16
 """Rings of corners of a ball between its middle and its top."""
 _TINY = 1e-9
+_UPRIGHT = 1e-6
+"""Sine of the angle by which sides of prisms may lean, and share by which their ends may differ."""
+_GRID = 1e-6
+"""Distance of points that count as one, such as corners of neighbors that were rounded [m]."""
 _SHEET = 0.01
 """Half of the thickness that a surface without an inside gets [m]."""
 
@@ -125,7 +130,7 @@ def slice_of_mesh(triangles: Triangles, low: float, high: float) -> Any:
     bottom = float(corners[..., 2].min())
     ends = _cut(corners, max(low, bottom + 1e-6 * max(high - bottom, 1e-3)))
     if len(ends):
-        lines = shapely.union_all(shapely.set_precision(shapely.linestrings(ends), 1e-6))
+        lines = shapely.union_all(shapely.set_precision(shapely.linestrings(ends), _GRID))
         inside = _inside(lines, ends)
         loose = lines.difference(inside.buffer(1e-5)) if not inside.is_empty else lines
         parts += [inside, loose.buffer(_SHEET)] if loose.length > 0.05 * lines.length else [inside]
@@ -135,6 +140,35 @@ def slice_of_mesh(triangles: Triangles, low: float, high: float) -> Any:
     region = shapely.union_all(shapely.make_valid(np.array(parts, dtype=object))) if parts else None
     areas = [one for one in shapely.get_parts(region) if one.geom_type == "Polygon"] if region is not None else []
     return shapely.union_all(areas) if areas and sum(one.area for one in areas) > _TINY else None
+
+
+def slice_of_prisms(triangles: Triangles, low: float, high: float) -> tuple[bool, Any]:
+    """The outline of upright prisms between two heights, of any number of them in seconds.
+
+    Args:
+        triangles: (T, 3, 3) corners [m], counterclockwise seen from outside.
+        low: The lower height [m].
+        high: The upper height [m].
+
+    Returns:
+        Whether the surfaces are closed prisms that all begin and end at the same heights, and their outline; None if no
+        part is between the heights.
+    """
+    corners = np.asarray(triangles, dtype=np.float64)
+    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    level, area = sides[:, 2], np.linalg.norm(sides, axis=1)
+    z = corners[..., 2]
+    bottom, top = float(z.min()), float(z.max())
+    flat = np.abs(level) > _UPRIGHT * area
+    ends = np.where(level < 0, bottom, top)
+    as_prisms = np.abs(z - ends[:, None]).max(axis=1)[flat].max(initial=0.0) <= _UPRIGHT * max(top - bottom, 1.0)
+    ground, roof = -level[flat & (level < 0)].sum(), level[flat & (level > 0)].sum()
+    if not as_prisms or not ground > 0 or abs(ground - roof) > _UPRIGHT * ground:
+        return False, None
+    if bottom >= high - _TINY or top <= low + _TINY:
+        return True, None
+    grounds = shapely.polygons(corners[flat & (level < 0)][..., :2])
+    return True, shapely.union_all(grounds)
 
 
 def _inside(lines: Any, ends: Floats) -> Any:

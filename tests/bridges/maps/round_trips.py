@@ -14,7 +14,7 @@ from irsim.bridges.solids import Box, merged_cells, room_of, solids_of
 from irsim.common.outline import Circle, Line
 from tests.bridges.scenes import recorded
 
-__all__ = ["MAP", "SHAPES", "WALLS", "differing_share"]
+__all__ = ["LARGE_MAP", "MAP", "SHAPES", "WALLS", "differing_share"]
 
 _ROBOT = """
 robot:
@@ -40,6 +40,11 @@ MAP = f"""
 world: {{width: 8, height: 6, obstacle_map: {{name: perlin, resolution: 0.25, seed: 3, fill: 0.2}}}}
 {_ROBOT}
 """
+LARGE_MAP = f"""
+world: {{width: 60, height: 60, obstacle_map: {{name: perlin, resolution: 0.2, seed: 3, fill: 0.3, complexity: 0.6}}}}
+{_ROBOT}
+"""
+"""Its walls have several times as many triangles as a mesh may have that is cut one by one."""
 
 
 def differing_share(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from irsim.bridges.maps.slices import slice_of_mesh
+from irsim.bridges.maps.slices import slice_of_mesh, slice_of_prisms
 from tests.bridges.maps.scenes import box
 
 
@@ -44,3 +44,15 @@ def test_surfaces_that_look_the_wrong_way_or_both_ways() -> None:
     mixed[::3] = mixed[::3, ::-1]
     assert [area(part) for part in (whole, whole[:, ::-1], mixed)] == pytest.approx([6, 6, 6])
     assert area(whole, whole[:, ::-1]) == pytest.approx(6)
+
+
+def test_prisms_that_stand_upright() -> None:
+    """Many boxes and a ring of one height, which is empty above itself; other solids are no prisms."""
+    cells = np.concatenate([box([i, 0.3 * i, 0], [i + 1, 0.3 * i + 1, 2]) for i in range(40)])
+    assert slice_of_prisms(cells, 0.2, 1.5)[1].area == pytest.approx(40)
+    assert slice_of_prisms(cells, 2.1, 3) == (True, None)
+    around = np.concatenate([cells, cells + np.array([0.5, 0, 0])])
+    assert slice_of_prisms(around, 0.2, 1.5)[1].area == pytest.approx(slice_of_mesh(around, 0.2, 1.5).area)
+    leaning, lower = cells + 0.01 * cells[..., 2:] * np.array([1, 0, 0]), box([0, 0, 0], [1, 1, 1])
+    for part in (leaning, np.concatenate([cells, lower]), cells[:1], cells[:, ::-1][:5], np.zeros((2, 3, 3))):
+        assert slice_of_prisms(part, 0.2, 1.5) == (False, None)

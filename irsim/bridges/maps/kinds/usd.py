@@ -26,7 +26,8 @@ __all__ = ["KIND"]
 _MAX_FILES = 10_000
 """Files in a ``.usdz``."""
 _MAX_OUTLINED = 10_000
-"""Triangles of a stage of irsim up to which outlines are made in seconds; a larger one is read as meshes."""
+"""Triangles of a stage of irsim that are no upright prisms, up to which outlines are made in seconds; a larger one is
+read as meshes."""
 _LISTED = 5
 """Names that a note lists."""
 
@@ -53,7 +54,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> SceneTrian
         why = "; ".join(["it has no visible meshes", *answer["notes"]])
         raise unusable(path, why, "export the stage with its meshes, not only references")
     triangles, turn = turned(triangles, options.rotate, axes_of(frame))
-    exact = answer["own"] is not None and turn is None and len(triangles) <= _MAX_OUTLINED
+    exact = answer["own"] is not None and turn is None
     outlines = _outlines(triangles, answer["own"], options) if exact else None
     if outlines is None or not outlines.things:
         return SceneTriangles(frame, triangles, meters_per_unit=scale, notes=answer["notes"], turn=turn)
@@ -65,19 +66,22 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> SceneTrian
     return outlines
 
 
-def _outlines(triangles: Triangles, parts: list[tuple[Any, ...]], options: ImportOptions) -> Outlines:
+def _outlines(triangles: Triangles, parts: list[tuple[Any, ...]], options: ImportOptions) -> Outlines | None:
     """Outlines of all that stands on the ground of a stage that irsim wrote, with the area that it had in irsim.
 
     Args:
         triangles: (T, 3, 3) corners [m].
         parts: Room, name, number of triangles and disk (None for other shapes) of one part after the other.
         options: How the import is done.
+
+    Returns:
+        None if that would take minutes.
     """
     low = (options.height or 0.0) + options.climb
     high = low - options.climb + options.headroom
     result = Outlines([], height=options.height or 0.0)
     moving = set[str]()
-    end = 0
+    end = others = 0
     for room, name, count, disk in parts:
         part, end = triangles[end : end + count], end + count
         if room == "Ground":
@@ -85,8 +89,15 @@ def _outlines(triangles: Triangles, parts: list[tuple[Any, ...]], options: Impor
             result.ground = (float(left), float(lower), float(right), float(upper))
         elif room in ("Robots", "Pedestrians"):
             moving.add(name)
-        elif (region := slices.slice_of_mesh(part, low, high)) is not None:
-            result.things.append(Outlined(name, region, None if disk is None else tuple(disk)))
+        else:
+            upright, region = slices.slice_of_prisms(part, low, high)
+            if not upright:
+                others += count
+                if others > _MAX_OUTLINED:
+                    return None
+                region = slices.slice_of_mesh(part, low, high)
+            if region is not None:
+                result.things.append(Outlined(name, region, None if disk is None else tuple(disk)))
     if moving:
         listed = ", ".join(clean(name, 80) for name in sorted(moving)[:_LISTED])
         more = ", …" if len(moving) > _LISTED else ""
