@@ -32,9 +32,8 @@ from tests.mcp.conftest import (
     connected,
     error_of,
     linux,
-    runs,
 )
-from tests.processes import wait_until_gone
+from tests.processes import runs, wait_until_gone
 
 pytestmark = [pytest.mark.one_python, pytest.mark.usefixtures("ordinary_processes")]
 

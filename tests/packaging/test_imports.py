@@ -226,11 +226,37 @@ with tempfile.TemporaryDirectory() as folder:
 
 
 def test_tests_import_only_helpers_that_are_there() -> None:
-    """A moved folder of tests takes along those who import from it."""
+    """Whoever moves or renames a helper of tests looks for those who import it."""
     missing = [
         f"{path.relative_to(ROOT)}: {name}"
         for path in (ROOT / "tests").rglob("*.py")
-        for name in re.findall(r"^\s*(?:from|import) (tests(?:\.\w+)+)", path.read_text(encoding="utf-8"), re.MULTILINE)
-        if not any((ROOT / name.replace(".", "/")).with_suffix(end).exists() for end in ("", ".py"))
+        for name in imported_names(path)
+        if name[0].startswith("tests.") and not _is_there(name[0])
     ]
     assert missing == []
+
+
+@cache
+def _is_there(name: str) -> bool:
+    """Whether a name below ``tests`` is a module, a folder, or a name that a module binds."""
+    place = ROOT / name.replace(".", "/")
+    if place.is_dir() or place.with_suffix(".py").is_file():
+        return True
+    module = next(
+        (path for path in (place.parent.with_suffix(".py"), place.parent / "__init__.py") if path.exists()), None
+    )
+    return module is not None and place.name in _bound(module)
+
+
+@cache
+def _bound(module: Path) -> set[str]:
+    """All names that statements of a module bind, those in blocks too."""
+    names = set()
+    for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            names.add(node.name)
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            names.add(node.id)
+        elif isinstance(node, (ast.Import, ast.ImportFrom)):
+            names |= {(alias.asname or alias.name).partition(".")[0] for alias in node.names}
+    return names
