@@ -11,6 +11,7 @@ import yaml
 
 from irsim.bundled.templates.fill import format_value, replace_values
 from irsim.common.text import plural
+from irsim.common.yaml.tree import LOADER, node_at
 from irsim.diagnostics.diagnostic import Path
 from irsim_evals.baselines.language import BEHAVIORS, DRIVES, NOUNS, first, has, plain, quantities
 from irsim_evals.baselines.layouts import lidar
@@ -87,7 +88,7 @@ def add(text: str, path: Path, key: str, value: Any) -> str:
     Raises:
         KeyError: There is no mapping at the path, or the key holds something else.
     """
-    node = _node(yaml.compose(text, Loader=yaml.SafeLoader), path)
+    node = node_at(yaml.compose(text, Loader=LOADER), path)
     if not isinstance(node, yaml.MappingNode):
         raise KeyError(path)
     held = next((child for name, child in node.value if name.value == key), None)
@@ -109,17 +110,6 @@ def _insert(text: str, node: yaml.CollectionNode, new: str) -> str:
     line_end = text.find("\n", at)
     at = len(text) if line_end < 0 else line_end
     return text[:at] + "\n" + " " * node.start_mark.column + new + text[at:]
-
-
-def _node(node: yaml.Node | None, path: Path) -> yaml.Node | None:
-    for part in path:
-        if isinstance(node, yaml.MappingNode):
-            node = {key.value: child for key, child in node.value}.get(str(part))
-        elif isinstance(node, yaml.SequenceNode) and isinstance(part, int) and part < len(node.value):
-            node = node.value[part]
-        else:
-            raise KeyError(part)
-    return node
 
 
 def is_unclear(request: str) -> bool:

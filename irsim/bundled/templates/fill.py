@@ -17,6 +17,7 @@ import yaml
 
 from irsim.bundled.templates.store import Template, TemplateError
 from irsim.common.text import decimal
+from irsim.common.yaml.tree import LOADER, node_at, same_data
 from irsim.diagnostics.diagnostic import Path
 
 __all__ = ["evaluate", "fill", "format_value", "parse_path", "parse_settings", "replace_values"]
@@ -46,6 +47,8 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "sin": math.sin,
     "cos": math.cos,
 }
+_NEAR = 1e-6
+"""Difference of numbers that their spelling in a template does not show."""
 
 
 def evaluate(expression: str, values: Mapping[str, Any]) -> Any:
@@ -120,11 +123,11 @@ def replace_values(text: str, changes: Mapping[Path, Any]) -> str:
     Raises:
         KeyError: A path does not exist.
     """
-    root = yaml.compose(text, Loader=yaml.SafeLoader)
+    root = yaml.compose(text, Loader=LOADER)
     pieces: list[tuple[int, int, str]] = []
     for path, value in changes.items():
-        node = _node_at(root, path)
-        if not _same(_plain(node), value):
+        node = node_at(root, path)
+        if not same_data(_plain(node), value, near=_NEAR):
             pieces.append((node.start_mark.index, node.end_mark.index, format_value(value)))
     for start, end, new in sorted(pieces, reverse=True):
         text = _splice(text, start, end, new)
@@ -175,32 +178,9 @@ def _splice(text: str, start: int, end: int, new: str) -> str:
     return text[:start] + new + rest
 
 
-def _node_at(node: yaml.Node | None, path: Path) -> yaml.Node:
-    for part in path:
-        if isinstance(node, yaml.MappingNode):
-            node = {key.value: child for key, child in node.value}[str(part)]
-        elif isinstance(node, yaml.SequenceNode) and isinstance(part, int):
-            node = node.value[part]
-        else:
-            raise KeyError(part)
-    if node is None:
-        raise KeyError(path)
-    return node
-
-
 def _plain(node: yaml.Node) -> Any:
     constructor = yaml.SafeLoader("")
     try:
         return constructor.construct_document(node)
     finally:
         constructor.dispose()
-
-
-def _same(old: Any, new: Any) -> bool:
-    if isinstance(old, list) and isinstance(new, list):
-        return len(old) == len(new) and all(_same(a, b) for a, b in zip(old, new, strict=True))
-    if isinstance(old, dict) and isinstance(new, dict):
-        return old.keys() == new.keys() and all(_same(old[key], new[key]) for key in old)
-    if isinstance(old, bool) or isinstance(new, bool) or isinstance(old, str) or isinstance(new, str):
-        return type(old) is type(new) and bool(old == new)
-    return isinstance(old, (int, float)) and isinstance(new, (int, float)) and abs(old - new) < 1e-6

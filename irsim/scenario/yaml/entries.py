@@ -8,9 +8,10 @@ from collections.abc import Sequence
 import yaml
 
 from irsim.common.yaml.compose import compose
+from irsim.common.yaml.tree import LOADER, end_of, node_at, same_data
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.yaml.rewrite import LOADER, end_of, node_at, same_data, yaml_flow
+from irsim.scenario.yaml.rewrite import yaml_flow
 
 __all__ = ["add_entry"]
 

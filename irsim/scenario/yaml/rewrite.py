@@ -9,15 +9,13 @@ from typing import Any
 import yaml
 
 from irsim.common.yaml.compose import compose
-from irsim.diagnostics.diagnostic import Edit, Path
+from irsim.common.yaml.tree import LOADER, end_of, is_key, node_at, same_data
+from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.yaml.edits import apply_edits
 from irsim.scenario.yaml.formatting import flow
 
-__all__ = ["LOADER", "end_of", "node_at", "rewrite", "same_data", "yaml_flow"]
-
-LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-"""The loader of PyYAML that gives positions; nothing is constructed with it."""
+__all__ = ["rewrite", "yaml_flow"]
 
 
 def rewrite(text: str, edit: Edit, limits: Limits = DEFAULT_LIMITS) -> str | None:
@@ -70,46 +68,19 @@ def _apply(text: str, root: yaml.Node | None, edit: Edit) -> str:
         raise _NotPossible
     if edit.action == "add":
         return _add(text, parent, str(last), edit.value)
-    index = next((i for i, (key, _) in enumerate(parent.value) if _is_key(key, last)), -1)
+    index = next((i for i, (key, _) in enumerate(parent.value) if is_key(key, last)), -1)
     if index < 0:
         raise _NotPossible
     key, value = parent.value[index]
     if value.start_mark.index < key.end_mark.index:
         raise _NotPossible  # an alias: the node is elsewhere in the text
     if edit.action == "rename":
-        if any(_is_key(other, str(edit.value)) for other, _ in parent.value):
+        if any(is_key(other, str(edit.value)) for other, _ in parent.value):
             raise _NotPossible
         return text[: key.start_mark.index] + yaml_flow(str(edit.value)) + text[key.end_mark.index :]
     if edit.action == "replace":
         return _replace(text, value, edit.value, key)
     return _remove(text, parent, index)
-
-
-def _is_key(node: yaml.Node, part: str | int) -> bool:
-    return isinstance(node, yaml.ScalarNode) and node.value == str(part)
-
-
-def node_at(node: yaml.Node | None, path: Path) -> yaml.Node:
-    """The node at a path; raises ``LookupError`` if the path leads nowhere."""
-    for part in path:
-        if isinstance(node, yaml.MappingNode):
-            node = next((value for key, value in node.value if _is_key(key, part)), None)
-        elif isinstance(node, yaml.SequenceNode) and isinstance(part, int):
-            node = node.value[part]
-        else:
-            raise _NotPossible
-    if node is None:
-        raise _NotPossible
-    return node
-
-
-def end_of(node: yaml.Node) -> int:
-    """Index where the text of a node ends; the end mark of a block would include the comments behind it."""
-    if isinstance(node, yaml.MappingNode) and not node.flow_style and node.value:
-        return max(end_of(node.value[-1][1]), end_of(node.value[-1][0]))
-    if isinstance(node, yaml.SequenceNode) and not node.flow_style and node.value:
-        return end_of(node.value[-1])
-    return int(node.end_mark.index)
 
 
 def _replace(text: str, node: yaml.Node, value: Any, key: yaml.Node | None = None) -> str:
@@ -149,7 +120,7 @@ def _remove(text: str, parent: yaml.MappingNode, index: int) -> str:
 
 
 def _add(text: str, parent: yaml.MappingNode, key: str, value: Any) -> str:
-    if any(_is_key(other, key) for other, _ in parent.value):
+    if any(is_key(other, key) for other, _ in parent.value):
         raise _NotPossible
     pair = f"{yaml_flow(key)}: {yaml_flow(value)}"
     if not parent.value:
@@ -175,31 +146,8 @@ def _add(text: str, parent: yaml.MappingNode, key: str, value: Any) -> str:
     return f"{text[: stop + 1]}{indent}{pair}{newline}{text[stop + 1 :]}"
 
 
-def same_data(a: Any, b: Any) -> bool:
-    """Whether data are equal, value by value and type by type."""
-    return _equal(_without_aliases(a), _without_aliases(b))
-
-
 def _without_aliases(value: Any) -> Any:
     """A copy in which each alias has a value of its own."""
     if isinstance(value, Mapping):
         return {key: _without_aliases(item) for key, item in value.items()}
     return [_without_aliases(item) for item in value] if isinstance(value, (list, tuple)) else value
-
-
-def _equal(a: Any, b: Any) -> bool:
-    """Equal values of equal types (1 is not true, nor 1.0)."""
-    if isinstance(a, Mapping) and isinstance(b, Mapping):
-        return set(a) == set(b) and all(_equal(a[key], b[key]) for key in a)
-    if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
-        return len(a) == len(b) and all(map(_equal, a, b))
-    if isinstance(a, float) and isinstance(b, float):
-        return a == b or abs(a - b) <= 1e-9 * abs(a)
-    if (
-        isinstance(a, (int, float))
-        and isinstance(b, (int, float))
-        and not isinstance(a, bool)
-        and not isinstance(b, bool)
-    ):
-        return a == b
-    return type(a) is type(b) and bool(a == b)
