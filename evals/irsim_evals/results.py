@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from pydantic import ConfigDict
 
 import irsim
+from irsim.common.hashing import digest
 from irsim.common.text import escape_marks
 from irsim_evals.cases.store import Instance, case_ids, folder
 from irsim_evals.grader.outcome import Record, Verdict
@@ -63,10 +63,7 @@ class Results(Record):
 
 def cases_hash() -> str:
     """Digest of all case files."""
-    digest = hashlib.sha256()
-    for case_id in case_ids():
-        digest.update((folder("cases") / f"{case_id}.yaml").read_bytes())
-    return digest.hexdigest()[:16]
+    return digest(*((folder("cases") / f"{case_id}.yaml").read_bytes() for case_id in case_ids()))[:16]
 
 
 def trial_of(instance: Instance, verdict: Verdict, arm: str, **more: Any) -> Trial:

@@ -6,7 +6,6 @@ small enough that little is lost with a process. Scenarios and maps travel once,
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import json
 import tempfile
@@ -22,6 +21,7 @@ from irsim.benchmarks.episode import Job, Task, policy_of, run_task, scenario_of
 from irsim.benchmarks.pool import MAX_DEATHS, cores, dead_workers
 from irsim.benchmarks.ray_connection import ClusterError, connected
 from irsim.benchmarks.together import run_together
+from irsim.common.hashing import digest
 from irsim.common.installed import version
 from irsim.common.text import clean
 from irsim.policies.catalog import file_of, files_beside, with_file
@@ -208,7 +208,7 @@ def _shared(ray: Any, jobs: Sequence[Job]) -> dict[str, Any]:
 
     def sent(path: Path) -> str:
         content = path.read_bytes()
-        key = f"{hashlib.sha256(content).hexdigest()}{path.suffix}"
+        key = f"{digest(content)}{path.suffix}"
         if key not in files:
             files[key] = ray.put(content)
         return key

@@ -6,7 +6,6 @@ a digest of both and of the first line, so that an episode which was changed or 
 
 from __future__ import annotations
 
-import hashlib
 import os
 import threading
 from collections.abc import Mapping, Sequence
@@ -15,6 +14,7 @@ from pathlib import Path
 
 from irsim.benchmarks.summary import incident_messages, notes_of, perturbation_notes, protocols_of, rows_of
 from irsim.common.files import write_atomically
+from irsim.common.hashing import digest
 from irsim.common.records import ContentError, read_json
 from irsim.episodes.opening import UNOPENED
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
@@ -162,8 +162,8 @@ def _read(file: str | Path) -> tuple[BenchmarkResult, dict[int, EpisodeRow]]:
 
 def _line(head: str, number: int, episode: EpisodeRow) -> str:
     row = episode.model_dump_json()
-    digest = hashlib.sha256(f"{head}\n{number}\n{row}".encode()).hexdigest()[:16]
-    return f'{{"number": {number}, "episode": {row}, "digest": "{digest}"}}'
+    own = digest(f"{head}\n{number}\n{row}")[:16]
+    return f'{{"number": {number}, "episode": {row}, "digest": "{own}"}}'
 
 
 def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> BenchmarkResult:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from irsim.benchmarks.episode import Until
 from irsim.benchmarks.policies import files_of, open_planned
 from irsim.benchmarks.seeds import seeds_from
 from irsim.benchmarks.suite import Protocol, Suite
+from irsim.common.hashing import digest, file_digest
 from irsim.common.installed import version as this_version
 from irsim.policies.policy import Policy
 from irsim.scenario.limits import DEFAULT_LIMITS
@@ -119,7 +119,7 @@ class Plan(BaseModel):
 
 def short_hash(text: str) -> str:
     """The beginning of the SHA-256 of a text."""
-    return hashlib.sha256(text.encode()).hexdigest()[:_HASH_LENGTH]
+    return digest(text)[:_HASH_LENGTH]
 
 
 def map_hashes(documents: Sequence[Document]) -> list[dict[str, str]]:
@@ -132,9 +132,7 @@ def _hashes(document: Document) -> dict[str, str]:
     if scenario is None:
         return {}
     maps = {name: Path(path) for name, path in scenario.map_files.items()}
-    return {
-        name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in sorted(maps.items()) if path.is_file()
-    }
+    return {name: file_digest(path) for name, path in sorted(maps.items()) if path.is_file()}
 
 
 def file_plan(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import shutil
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import Literal
 
 from irsim.common import data_files as resources
+from irsim.common.hashing import digest
 from irsim.common.records import ContentError, read_json
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import CodedError
@@ -163,7 +163,7 @@ def _install(folder: Path, skill: Skill, *, force: bool, dry_run: bool) -> Insta
     )
     if not written and folder.is_dir():
         return Installed(skill.name, "unchanged", folder, skill.version)
-    changed = [name for name in written if name in old and digests.get(name) != _digest(old[name])]
+    changed = [name for name in written if name in old and digests.get(name) != digest(old[name])]
     if folder.is_symlink():
         changed = changed or ["(a link)"]
     elif folder.exists() and not folder.is_dir():
@@ -184,12 +184,8 @@ def _contents(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
 
 
-def _digest(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()
-
-
 def _record(skill: Skill, files: Mapping[str, bytes]) -> bytes:
-    digests = {name: _digest(content) for name, content in files.items()}
+    digests = {name: digest(content) for name, content in files.items()}
     return (json.dumps({"skill": skill.name, "version": skill.version, "files": digests}, indent=1) + "\n").encode()
 
 

@@ -1,10 +1,10 @@
-"""Texts of JSON that irsim writes, also with names of files that cannot be decoded: on Linux they may be any bytes."""
+"""JSON that irsim writes: texts with names of files that cannot be decoded (on Linux any bytes), and schemas."""
 
 from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["encodable"]
+__all__ = ["encodable", "schema_of_file"]
 
 
 def encodable(data: Any) -> Any:
@@ -14,3 +14,8 @@ def encodable(data: Any) -> Any:
     if isinstance(data, dict):
         return {encodable(key): encodable(value) for key, value in data.items()}
     return [encodable(item) for item in data] if isinstance(data, (list, tuple)) else data
+
+
+def schema_of_file(schema: dict[str, Any]) -> dict[str, Any]:
+    """A JSON Schema as the whole of a file: with the version of JSON Schema that all schemas of irsim follow."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -8,9 +8,10 @@ only: the MCP server serves the replay page without NumPy.
 from __future__ import annotations
 
 import base64
-import hashlib
 import re
 from pathlib import Path
+
+from irsim.common.hashing import digest
 
 __all__ = ["bundle", "one_page"]
 
@@ -62,4 +63,4 @@ def bundle(sources: Path) -> str:
 
 def _fingerprint(text: str) -> str:
     """Hash of a script or style sheet, as a content security policy lists it."""
-    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+    return f"'sha256-{base64.b64encode(bytes.fromhex(digest(text))).decode()}'"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 import stat
 from pathlib import Path
@@ -13,10 +14,12 @@ from pydantic_core import from_json
 
 from irsim.common.text import clean
 
-__all__ = ["MAX_RECORD_BYTES", "ContentError", "read_bytes", "read_json", "read_json_lines", "read_text"]
+__all__ = ["MAX_RECORD_BYTES", "ContentError", "FileError", "read_bytes", "read_json", "read_json_lines", "read_text"]
 
 MAX_RECORD_BYTES = 32 * 1024**2
 """Size of the largest record that is read."""
+_READ = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+_BLOCK_BYTES = 1 << 20
 _LONG_INTEGER = re.compile(rb"\d{40}")
 """Digits beyond which a number may be an integer that no array holds."""
 _HUGE = re.compile(rb"\d{300}|[eE]\+?\d{3}")
@@ -42,24 +45,64 @@ class ContentError(Exception):
         super().__init__(message)
 
 
-def read_bytes(file: Path, most_bytes: int = MAX_RECORD_BYTES) -> bytes:
-    """The bytes of an ordinary file.
+class FileError(ContentError):
+    """The bytes of a file cannot be had.
+
+    Attributes:
+        code: ``file-not-found``, ``not-a-file``, ``file-too-large`` or ``unreadable``.
+        size: Its size in bytes, or what is known of it, if it is too large.
+    """
+
+    def __init__(
+        self, message: str, given: str = "", allowed: str = "", *, code: str = "unreadable", size: int = 0
+    ) -> None:
+        super().__init__(message, given, allowed)
+        self.code, self.size = code, size
+
+
+def read_bytes(file: str | Path, most_bytes: int = MAX_RECORD_BYTES, *, follow: bool = True) -> bytes:
+    """The bytes of an ordinary file; this never waits, as a pipe would make it.
+
+    Args:
+        file: The file.
+        most_bytes: Its largest size.
+        follow: Whether it may be a link.
 
     Raises:
-        ContentError: There is no such file, it is too large, or it cannot be read.
+        FileError: There is no such file, it is too large, or it cannot be read.
     """
     try:
-        status = file.stat()
-        if not stat.S_ISREG(status.st_mode):
-            kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a device or pipe"
-            raise ContentError(f"it is {kind}, not a file")
-        with file.open("rb") as opened:
-            content = opened.read(most_bytes + 1)
+        _check_kind(os.stat(file, follow_symlinks=follow))
+        descriptor = os.open(file, _READ | (0 if follow else getattr(os, "O_NOFOLLOW", 0)))
+        try:
+            status = os.fstat(descriptor)
+            _check_kind(status)  # it may be another one by now
+            content = b"" if status.st_size > most_bytes else _read(descriptor, most_bytes + 1)
+        finally:
+            os.close(descriptor)
+    except FileNotFoundError as error:
+        raise FileError(error.strerror or str(error), code="file-not-found") from None
     except (OSError, ValueError) as error:
-        raise ContentError(getattr(error, "strerror", None) or str(error)) from None
-    if len(content) > most_bytes:
-        raise ContentError("it is too large", f"{max(status.st_size, len(content)):,} bytes", f"up to {most_bytes:,}")
+        raise FileError(getattr(error, "strerror", None) or str(error)) from None
+    size = max(status.st_size, len(content))
+    if size > most_bytes:
+        limit = f"up to {most_bytes:,}"
+        raise FileError("it is too large", f"{size:,} bytes", limit, code="file-too-large", size=size)
     return content
+
+
+def _check_kind(status: os.stat_result) -> None:
+    if not stat.S_ISREG(status.st_mode):
+        kinds = {stat.S_IFDIR: "a folder", stat.S_IFLNK: "a link"}
+        kind = kinds.get(stat.S_IFMT(status.st_mode), "a device or pipe")
+        raise FileError(f"it is {kind}, not a file", code="not-a-file")
+
+
+def _read(descriptor: int, most: int) -> bytes:
+    content = bytearray()
+    while len(content) < most and (more := os.read(descriptor, min(most - len(content), _BLOCK_BYTES))):
+        content += more
+    return bytes(content)
 
 
 def read_text(source: bytes | Path, most_bytes: int = MAX_RECORD_BYTES) -> str:

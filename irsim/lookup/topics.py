@@ -7,6 +7,7 @@ import re
 from irsim.benchmarks.suite import SUITES
 from irsim.bundled import templates
 from irsim.common.event_kinds import EVENTS
+from irsim.common.json_output import schema_of_file
 from irsim.compat import DIFFERENCES
 from irsim.diagnostics.errors import InputError
 from irsim.lookup.answer import Answer, Key, TopicError
@@ -141,7 +142,7 @@ def schema_part(topic: str) -> Node:
         raise TopicError(" ".join(words), near_topics(all_topics(schema), words))
     path, nodes = match
     body = nodes[0] if len(nodes) == 1 else {"anyOf": nodes}
-    return {"$schema": schema["$schema"], "title": ".".join(path), **body, "$defs": definitions_of(schema, body)}
+    return schema_of_file({"title": ".".join(path), **body, "$defs": definitions_of(schema, body)})
 
 
 def _words(topic: str) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import inspect
 import math
 import os
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.common.arguments import as_given
+from irsim.common.hashing import digest
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest, suggestion
 from irsim.diagnostics.errors import CodedError, InputError, PolicyError
@@ -267,11 +267,8 @@ def _named(policy: Policy, text: str) -> Policy:
 
 def _digest(path: Path) -> str:
     """SHA-256 of a file, and of those beside it that belong to it."""
-    result = hashlib.sha256(path.read_bytes())
-    for other in files_beside(path):
-        if other.is_file():
-            result.update(other.read_bytes())
-    return result.hexdigest()
+    beside = (other.read_bytes() for other in files_beside(path) if other.is_file())
+    return digest(path.read_bytes(), *beside)
 
 
 def _is_number(value: Any) -> bool:

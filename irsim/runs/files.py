@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import time
 from dataclasses import dataclass
@@ -18,11 +17,11 @@ from irsim.common.records import MAX_RECORD_BYTES, ContentError, read_json, read
 from irsim.diagnostics.errors import CodedError
 
 __all__ = [
+    "DIGEST_LENGTH",
     "Claim",
     "RunError",
     "claim",
     "create_file",
-    "digest_of",
     "json_of",
     "lock_file",
     "plain_file",
@@ -32,6 +31,9 @@ __all__ = [
     "text_of",
     "unreadable",
 ]
+
+DIGEST_LENGTH = 32
+"""Characters of a digest by which a changed file is noticed."""
 
 
 class RunError(CodedError, ValueError):
@@ -94,11 +96,6 @@ def json_of(folder: Path, name: str) -> Any:
         return read_json(text)
     except ContentError as error:
         raise unreadable(f"'{name}' of run {folder.name} has been changed: {error.message}") from None
-
-
-def digest_of(content: bytes) -> str:
-    """A digest by which a changed file is noticed."""
-    return hashlib.sha256(content).hexdigest()[:32]
 
 
 def create_file(target: str | Path, text: bytes) -> None:

@@ -14,11 +14,12 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, Field, ValidationError
 
+from irsim.common.hashing import digest
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
 from irsim.results.run import RunResult
 from irsim.runs.chunks import Layout, load_chunk, load_events
-from irsim.runs.files import RunError, digest_of, json_of, plain_file, text_of, unreadable
+from irsim.runs.files import DIGEST_LENGTH, RunError, json_of, plain_file, text_of, unreadable
 from irsim.runs.plain_scenario import with_options
 from irsim.runs.store import META, RESULT, Status, find_run, omission_notes, run_folders, runs_folder, status_of
 from irsim.simulation.events import Event
@@ -142,9 +143,9 @@ class Run:
     @cached_property
     def resolved(self) -> dict[str, Any]:
         """World and objects at the start, with all defaults, as plain data."""
-        text, digest = text_of(self.folder, "resolved.json"), self.meta.get("resolved")
+        text, known = text_of(self.folder, "resolved.json"), self.meta.get("resolved")
         try:
-            if text is not None and digest in (None, digest_of(text.encode())):
+            if text is not None and known in (None, digest(text)[:DIGEST_LENGTH]):
                 return with_options(json_of(self.folder, "resolved.json"))
         except (TypeError, LookupError):
             pass

@@ -19,9 +19,10 @@ from pydantic_core import to_json
 
 import irsim._core as core
 from irsim.common.files import Buffer
+from irsim.common.hashing import digest
 from irsim.common.installed import version
 from irsim.runs.chunks import PieceWriter, pack_chunk
-from irsim.runs.files import Claim, RunError, claim, create_file, digest_of, record_json, replace_file
+from irsim.runs.files import DIGEST_LENGTH, Claim, RunError, claim, create_file, record_json, replace_file
 from irsim.runs.plain_scenario import plain_scenario
 from irsim.runs.store import (
     FILES,
@@ -141,7 +142,7 @@ class Recorder:
             self._claim = claim(self._path(SCENARIO_FILE), _text_of(simulation).encode())
             resolved = plain_scenario(simulation)
             create_file(self._path("resolved.json"), resolved)
-            self._meta["resolved"] = digest_of(resolved)
+            self._meta["resolved"] = digest(resolved)[:DIGEST_LENGTH]
             self._meta["maps"] = self._copy_maps()
             self._write_meta()
         except BaseException:

@@ -10,6 +10,7 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from irsim.common.json_output import schema_of_file
 from irsim.diagnostics.diagnostic import Diagnostic, is_slip_of
 from irsim.scenario.messages.translate import located, translate
 from irsim.scenario.yaml.document import Document, load_path, load_text
@@ -29,8 +30,7 @@ def explained(failure: ValidationError, document: Document, model: type[BaseMode
 
 def schema_text(schema: dict[str, Any]) -> str:
     """A JSON Schema as the text of a file."""
-    whole = {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
-    return json.dumps(whole, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return json.dumps(schema_of_file(schema), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class FileKind(Generic[Model]):
 
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of the files."""
-        return {"$schema": "https://json-schema.org/draft/2020-12/schema", **self.model.model_json_schema()}
+        return schema_of_file(self.model.model_json_schema())
 
     def schema_text(self) -> str:
         """The JSON Schema as the text of a file."""

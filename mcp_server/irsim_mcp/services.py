@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
 from collections import OrderedDict
@@ -11,6 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from irsim.common.hashing import digest
 from irsim.common.text import clean, plural
 from irsim_mcp.answers import WorkerResult, failure
 from irsim_mcp.jobs import Jobs
@@ -44,7 +44,7 @@ class RecentTexts:
 
     def remember(self, text: str) -> str:
         """Keep a text and return its id, which depends on the text alone."""
-        name = f"text-{hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:6]}"
+        name = f"text-{digest(text)[:6]}"
         self._texts[name] = text
         self._texts.move_to_end(name)
         while len(self._texts) > 1 and (

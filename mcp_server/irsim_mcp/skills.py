@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 import mimetypes
 import re
 from collections.abc import Sequence
@@ -17,6 +16,7 @@ from mcp.server.mcpserver.resources import FunctionResource
 from mcp.types import INVALID_PARAMS, PaginatedRequestParams, RequestParams
 
 from irsim.common import data_files as resources
+from irsim.common.hashing import digest
 from irsim.common.text import clean
 from irsim_mcp.answers import failure
 
@@ -139,6 +139,5 @@ def _entry(folder: Path) -> dict[str, Any]:
     files = []
     for name, path in skill_files(folder).items():
         data = path.read_bytes()
-        digest = f"sha256:{hashlib.sha256(data).hexdigest()}"
-        files.append({"uri": _uri(folder, name), "digest": digest, "size": len(data)})
+        files.append({"uri": _uri(folder, name), "digest": f"sha256:{digest(data)}", "size": len(data)})
     return {"uri": _uri(folder, _MAIN), "frontmatter": frontmatter, "resources": files}

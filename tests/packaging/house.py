@@ -122,6 +122,21 @@ def process_starts() -> list[str]:
     return files_with(r"subprocess\.Popen\(|anyio\.open_process\(|\.Process\(|get_context\(")
 
 
+def hashes() -> list[str]:
+    """Files that compute a hash."""
+    return files_with(r"\bhashlib\b")
+
+
+def limited_reads() -> list[str]:
+    """Files that read one byte more than a limit, to learn whether a file is larger."""
+    return files_with(r"read\([^()]* \+ 1\)")
+
+
+def schema_versions() -> list[str]:
+    """Files that name the version of JSON Schema."""
+    return files_with(r"json-schema\.org/draft")
+
+
 def process_limits() -> list[str]:
     """Files that limit what a process uses."""
     return files_with(r"\.setrlimit\(")
@@ -173,7 +188,9 @@ def rows() -> Iterator[tuple[str, object]]:
         "files that translate errors of models": translators,
         "types that describe a problem": problem_types,
         "files that start a process": process_starts,
-        "files that hash": lambda: files_with(r"hashlib\."),
+        "files that hash": hashes,
+        "files that read within a limit": limited_reads,
+        "files that name the version of JSON Schema": schema_versions,
     }
     for name, find in counted.items():
         yield name, len(find())

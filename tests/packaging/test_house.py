@@ -18,6 +18,9 @@ from tests.packaging import house
         (house.process_starts, 7),
         (house.problem_types, 5),
         (house.translators, 5),
+        (house.hashes, 1),
+        (house.limited_reads, 1),
+        (house.schema_versions, 1),
     ],
 )
 def test_one_idea_has_one_home(find: Callable[[], list[str]], most: int) -> None:

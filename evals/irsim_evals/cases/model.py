@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, create_model, model_validator
 
+from irsim.common.json_output import schema_of_file
 from irsim_evals.cases.drawing import Drawing, Record
 from irsim_evals.grader.matching import Quantity, Seeds
 from irsim_evals.grader.predicates._base import Predicate, registered
@@ -203,9 +204,7 @@ def case_schema() -> dict[str, Any]:
     """The schema; a text such as ``$(radius)`` or ``90deg`` may stand for any number or flag."""
     schema = Case.model_json_schema(by_alias=True)
     opened: dict[str, Any] = _opened(schema)
-    opened["$schema"] = "https://json-schema.org/draft/2020-12/schema"
-    opened["title"] = "A case of irsim-evals"
-    return opened
+    return schema_of_file({**opened, "title": "A case of irsim-evals"})
 
 
 def schema_text() -> str:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import stat
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +10,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from irsim.common.records import ContentError, read_json
+from irsim.common.records import ContentError, FileError, read_bytes, read_json
 from irsim_evals.grader.outcome import Cost
 
 __all__ = [
@@ -197,11 +195,10 @@ def cost_of(path: Path) -> Cost:
         path: The file. A link is not followed.
     """
     try:
-        data = _log_of(path)
-    except FileNotFoundError:
-        return Cost()
-    except (OSError, ValueError) as error:
-        return Cost(notes=[f"{path.name}: {getattr(error, 'strerror', None) or error}; its calls are not counted"])
+        data = read_bytes(path, _MAX_LOG_BYTES, follow=False)
+    except FileError as error:
+        missing = error.code == "file-not-found"
+        return Cost() if missing else Cost(notes=[f"{path.name}: {error.message}; its calls are not counted"])
     lines = [line for line in data.split(b"\n") if line.strip()]
     calls = [call for line in lines if (call := _call_of(line)) is not None]
     left_out = len(lines) - len(calls)
@@ -212,18 +209,6 @@ def cost_of(path: Path) -> Cost:
         tokens=sum(call.tokens for call in calls),
         notes=notes if left_out else [],
     )
-
-
-def _log_of(path: Path) -> bytes:
-    """Content of an ordinary file of limited size; never waits, as a pipe would make it."""
-    file = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
-    with os.fdopen(file, "rb") as stream:
-        status = os.fstat(file)
-        if not stat.S_ISREG(status.st_mode):
-            raise ValueError("it is not an ordinary file")
-        if status.st_size > _MAX_LOG_BYTES:
-            raise ValueError(f"it has {status.st_size:,} bytes, and at most {_MAX_LOG_BYTES:,} are read")
-        return stream.read(_MAX_LOG_BYTES)
 
 
 def _call_of(line: bytes) -> _Call | None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 from pathlib import Path
 
 from irsim.bundled.skills import find_skills
+from irsim.common.hashing import digest
 
 __all__ = ["MODEL_ARMS", "SKILLS", "briefing", "skill_folders", "skills_hash"]
 
@@ -56,12 +56,11 @@ def skill_folders(arm: str) -> dict[str, Path]:
 @functools.cache
 def skills_hash() -> str:
     """Digest of all files of all skills."""
-    digest = hashlib.sha256()
+    parts: list[bytes | str] = []
     for skill in find_skills():
         for name, content in sorted(skill.files().items()):
-            digest.update(f"{skill.name}/{name}\n{len(content)}\n".encode())
-            digest.update(content)
-    return digest.hexdigest()[:16]
+            parts += [f"{skill.name}/{name}\n{len(content)}\n", content]
+    return digest(*parts)[:16]
 
 
 def _server_instructions(folder: Path) -> str:

@@ -20,8 +20,8 @@ from irsim_evals.harness.recording import (
     Names,
     RecordingEnds,
     Turn,
-    digest,
     scrubbed,
+    short_digest,
     task_hash,
     with_texts,
 )  # fmt: skip
@@ -124,7 +124,8 @@ def _turns_of(sample: Any, folders: Any) -> list[Turn]:
             call = calls.get(message.tool_call_id or "")
             if call is not None:
                 text = names.numbered(scrubbed(result_text(message), folders))
-                call.result_sha, call.result, call.failed = digest(text), text[:_EXCERPT], message.error is not None
+                call.result_sha, call.result = short_digest(text), text[:_EXCERPT]
+                call.failed = message.error is not None
             continue
         turn = Turn(role=message.role, text=names.known(message.text), pictures=_pictures(message.content))
         output = outputs.get(message.id) if message.role == "assistant" else None

@@ -6,7 +6,6 @@ the machine.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import re
@@ -19,6 +18,7 @@ from typing import Any, Literal
 from pydantic import ValidationError
 
 import irsim
+from irsim.common.hashing import digest
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError, PickledWhole
 from irsim_evals.cases.store import Instance, all_case_ids, case_of, given_pictures
@@ -29,7 +29,7 @@ from irsim_evals.grader.outcome import Cost, Record, name_of
 from irsim_evals.results import Trial, trial_of
 
 __all__ = [
-    "Attempt", "Call", "Header", "Names", "Recording", "RecordingEnds", "Turn", "digest", "find_recording",
+    "Attempt", "Call", "Header", "Names", "Recording", "RecordingEnds", "Turn", "find_recording",
     "grade_recording", "matched", "read_recording", "scrubbed", "task_hash", "with_texts", "write_recording",
 ]  # fmt: skip
 
@@ -138,16 +138,16 @@ class Recording(Record):
         return sorted(attempts, key=lambda one: one.trial)
 
 
-def digest(text: str) -> str:
+def short_digest(text: str) -> str:
     """Short digest of a text."""
-    return hashlib.sha256(text.encode("utf-8", errors="replace")).hexdigest()[:16]
+    return digest(text)[:16]
 
 
 def task_hash(instance: Instance) -> str:
     """Digest of what an agent is given."""
     drawings = {name: drawing.model_dump(mode="json") for name, drawing in instance.case.drawings.items()}
     given = [instance.prompt, instance.case.turns, instance.case.files, drawings]
-    return digest(json.dumps(given, ensure_ascii=False, sort_keys=True))
+    return short_digest(json.dumps(given, ensure_ascii=False, sort_keys=True))
 
 
 def write_recording(recording: Recording, path: Path) -> None:

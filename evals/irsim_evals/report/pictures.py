@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from irsim.common.hashing import digest
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.limited import LimitError, preload, run_all
 from irsim_evals.report.load import Asked
@@ -102,7 +102,7 @@ def draw_trials(
             gallery.shown[number] = "The world could not be built, so there is nothing to draw."
         else:
             job = _job(trials[number], asked[number], scenario)
-            wanted[number] = hashlib.sha256(repr(job).encode(errors="replace")).hexdigest()[:16]
+            wanted[number] = digest(repr(job))[:16]
             jobs[wanted[number]] = job
     made = _draw_all(jobs, progress)
     for number, name in wanted.items():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +28,7 @@ from irsim.bridges.maps.writing import Trip, files_of, suggest_trip, write_all_o
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
 from irsim.common.files import TargetError, check_suffix
+from irsim.common.hashing import file_digest
 from irsim.common.text import clean
 from irsim.components.maps._site import HALF, UNKNOWN_AS
 from irsim.diagnostics.diagnostic import format_path
@@ -178,11 +178,7 @@ def read_occupancy(
         raise unusable(path, f"it has {size:,} bytes, and at most {limits.bytes:,} are read", "give a smaller file")
     if kind.libraries:
         require(kind.extra, *kind.libraries)
-    digest = hashlib.sha256()
-    with path.open("rb") as stream:
-        while block := stream.read(1 << 20):
-            digest.update(block)
-    source = {"file": path.name, "kind": kind.name, "bytes": size, "sha256": digest.hexdigest()}
+    source = {"file": path.name, "kind": kind.name, "bytes": size, "sha256": file_digest(path)}
     try:
         read = kind.read(path, options, limits)
         if isinstance(read, SceneTriangles):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -11,6 +10,7 @@ from urllib.parse import quote
 
 from irsim.common.extras import require
 from irsim.common.files import check_suffix, replace_bytes, write_atomically
+from irsim.common.hashing import file_digest
 from irsim.common.installed import version
 from irsim.common.text import markdown_code, markdown_text
 from irsim.diagnostics.errors import ArgumentError
@@ -75,7 +75,7 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
         "description": description or task.title,
         "license": license,
         "source": f"irsim {version()}, {settings.algo}" + (" of Stable-Baselines3" if settings.algo == "ppo" else ""),
-        "task": f"{task.task} version {task.version}, SHA-256 {hashlib.sha256(file.read_bytes()).hexdigest()}",
+        "task": f"{task.task} version {task.version}, SHA-256 {file_digest(file)}",
         "protocol": task.protocol,
         "seeds": [settings.seed, task.seeds.train],
         "steps": best["steps"],
@@ -206,7 +206,7 @@ def _card_text(file: Path, task: Task, card: Mapping[str, Any]) -> str:
         f"from {notes['validation_first_seed']}, which were not trained on",
         "made with": card["source"],
         "licence": card["license"] or "not said",
-        "SHA-256": hashlib.sha256(file.read_bytes()).hexdigest(),
+        "SHA-256": file_digest(file),
     }
     table = "\n".join(f"| {key} | {markdown_text(value)} |" for key, value in rows.items())
     use = f"Use it: {markdown_code(f'irsim run SCENARIO --policy {file.name}')}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,6 +12,7 @@ from pydantic import Field, ValidationError
 
 from irsim.common.arguments import as_given
 from irsim.common.files import check_suffix
+from irsim.common.hashing import digest
 from irsim.common.text import clean
 from irsim.common.yaml.plain import read_value
 from irsim.diagnostics.diagnostic import format_path, suggestion
@@ -21,7 +21,7 @@ from irsim.options.base import Options
 from irsim.options.registry import Feature, Registry
 from irsim.policies.converters.torch_files.reader import parse_torch
 from irsim.policies.networks.errors import LIMITS, Limits, PolicyFileError, flaw
-from irsim.policies.networks.files import read_bytes, save_network
+from irsim.policies.networks.files import file_bytes, save_network
 from irsim.policies.networks.network import Network, check_network
 from irsim.policies.networks.values import Array, sides
 from irsim.scenario.file_kind import explained
@@ -138,16 +138,15 @@ def converted(
     feature = _converter(kind)
     chosen = _options(feature, options or {})
     assert feature.function is not None
-    content = read_bytes(Path(file), limits.file_bytes, "a file that torch.save wrote")
+    content = file_bytes(Path(file), limits.file_bytes, "a file that torch.save wrote")
     source = clean(str(file))
-    digest = hashlib.sha256(content).hexdigest()
-    weights = Weights(source, parse_torch(content, source, limits), digest)
+    weights = Weights(source, parse_torch(content, source, limits), digest(content))
     made: Network = feature.function(weights, chosen)
     card = made.document.card
     card = card.model_copy(update={
         "license": chosen.license or card.license,
         "source": chosen.source or card.source,
-        "notes": {**card.notes, "converted_from": Path(file).name[:200], "converted_sha256": digest},
+        "notes": {**card.notes, "converted_from": Path(file).name[:200], "converted_sha256": weights.digest},
     })  # fmt: skip
     network = replace(made, document=made.document.model_copy(update={"card": card}))
     check_network(network, source, limits)

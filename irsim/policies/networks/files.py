@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import stat
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +10,13 @@ import numpy as np
 
 from irsim.common.archives import pack_arrays, unpack_arrays
 from irsim.common.files import check_suffix, replace_bytes
-from irsim.common.records import ContentError, read_json
+from irsim.common.records import ContentError, FileError, read_bytes, read_json
 from irsim.common.text import clean
 from irsim.policies.networks.document import FORMAT, PolicyDocument
 from irsim.policies.networks.errors import LIMITS, Limits, PolicyFileError, content_flaw, flaw
 from irsim.policies.networks.network import FIX, Network, check_network, read_document
 
-__all__ = ["network_bytes", "parse_json", "read_bytes", "read_network", "save_network"]
+__all__ = ["file_bytes", "network_bytes", "parse_json", "read_network", "save_network"]
 
 _DOCUMENT = "policy"
 """Name of the array that holds the JSON document as UTF-8."""
@@ -85,7 +83,7 @@ def read_network(content: bytes, source: str, limits: Limits = LIMITS) -> Networ
     return network
 
 
-def read_bytes(path: Path, most: int, kind: str = "a .npz or .onnx file") -> bytes:
+def file_bytes(path: Path, most: int, kind: str = "a .npz or .onnx file") -> bytes:
     """The content of a regular file.
 
     Args:
@@ -97,30 +95,11 @@ def read_bytes(path: Path, most: int, kind: str = "a .npz or .onnx file") -> byt
         PolicyFileError: There is no such file, it cannot be read, or it is too large.
     """
     try:
-        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-        try:
-            status = os.fstat(descriptor)
-            regular = stat.S_ISREG(status.st_mode)
-            content = _read(descriptor, most + 1) if regular and status.st_size <= most else b""
-        finally:
-            os.close(descriptor)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it cannot be opened"
-        raise PolicyFileError(clean(str(path)), [flaw("", reason)], f"name {kind}") from None
-    if not regular:
-        raise PolicyFileError(clean(str(path)), [flaw("", "it is not a file")], f"name {kind}")
-    size = max(status.st_size, len(content))
-    if size > most:
-        large = flaw("", "the file is too large", f"{size} bytes", f"up to {most}")
-        raise PolicyFileError(clean(str(path)), [large], "use a smaller network, or raise Limits.file_bytes")
-    return content
-
-
-def _read(descriptor: int, most: int) -> bytes:
-    content = bytearray()
-    while len(content) < most and (more := os.read(descriptor, min(most - len(content), 1 << 20))):
-        content += more
-    return bytes(content)
+        return read_bytes(path, most)
+    except FileError as error:
+        large = error.code == "file-too-large"
+        fix = "use a smaller network, or raise Limits.file_bytes" if large else f"name {kind}"
+        raise PolicyFileError(clean(str(path)), [content_flaw(error)], fix) from None
 
 
 def parse_json(text: bytes, source: str, limits: Limits) -> Any:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 
+from irsim.common.hashing import digest
 from irsim.common.text import clean
 from irsim.policies.networks.errors import LIMITS, Limits, PolicyFileError, flaw
-from irsim.policies.networks.files import read_bytes, read_network
+from irsim.policies.networks.files import file_bytes, read_network
 from irsim.policies.networks.network import check_network
 from irsim.policies.networks.network_policy import LayerPolicy, LookaheadPolicy, NetworkPolicy
 
@@ -34,8 +34,8 @@ def open_network(path: str | Path, *, limits: Limits = LIMITS) -> NetworkPolicy:
     if suffix not in SUFFIXES:
         unknown = flaw("", "the suffix says what kind of network it is", path.suffix, " or ".join(SUFFIXES))
         raise PolicyFileError(source, [unknown], "name a .npz or .onnx file")
-    content = read_bytes(path, limits.file_bytes)
-    facts = {"file": str(path), "bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+    content = file_bytes(path, limits.file_bytes)
+    facts = {"file": str(path), "bytes": len(content), "sha256": digest(content)}
     if suffix == ".onnx":
         from irsim.policies.networks.onnx.policy import open_onnx
 

@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable
 from typing import Any
 
+from irsim.common.json_output import schema_of_file
 from irsim.options.base import SCHEMA_PARTS, SchemaParts
 from irsim.scenario.model.scenario import Scenario
 
@@ -71,8 +72,7 @@ def json_schema(*, user_code: bool = True) -> dict[str, Any]:
         },
     }
     rules = "; ".join(f"{name}: {why}" for name, why in INEXPRESSIBLE.items())
-    schema: dict[str, Any] = {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
+    schema = {
         "$id": SCHEMA_ID,
         "title": "irsim scenario",
         "description": "A scenario of the robot-navigation simulator irsim: a world with robots and obstacles in it.",
@@ -80,7 +80,7 @@ def json_schema(*, user_code: bool = True) -> dict[str, Any]:
         "anyOf": [{"$ref": "#/$defs/Scenario"}, {"$ref": "#/$defs/Wrapped"}],
         "$defs": {name: definitions[name] for name in sorted(definitions)},
     }
-    return schema
+    return schema_of_file(schema)
 
 
 def _definitions(user_code: bool) -> dict[str, Any]:

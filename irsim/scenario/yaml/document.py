@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import stat
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from irsim.common.records import FileError, read_bytes
 from irsim.common.yaml.compose import Composed, compose
 from irsim.common.yaml.nodes import Mark, Node
 from irsim.diagnostics.diagnostic import Diagnostic, Path
@@ -95,7 +95,7 @@ def load_path(path: str | os.PathLike[str], limits: Limits = DEFAULT_LIMITS) -> 
         return Document(None, [_not_text(name, content, error)], True, name=name, path=name, limits=limits)
     if content.translate(None, _CONTROL_BYTES) != content:
         return Document(None, [_not_text(name, content, None)], True, name=name, path=name, limits=limits)
-    return load_text(text, name=name, path=name, limits=limits)
+    return _document(compose(text, limits), text, name, name, limits)
 
 
 def load_text(
@@ -110,9 +110,11 @@ def load_text(
     except UnicodeEncodeError as error:
         problem = _half_a_character(text, error.start, name)
         return Document(None, [problem], True, name=name, path=path, limits=limits)
-    composed: Composed = compose(text, limits)
-    document = Document(composed.data, composed.problems, composed.fatal, text, name, path, (), limits)
-    return _unwrap(document)
+    return _document(compose(text, limits), text, name, path, limits)
+
+
+def _document(composed: Composed, text: str, name: str | None, path: str | None, limits: Limits) -> Document:
+    return _unwrap(Document(composed.data, composed.problems, composed.fatal, text, name, path, (), limits))
 
 
 def load_data(data: Any, name: str | None = None, limits: Limits = DEFAULT_LIMITS) -> Document:
@@ -129,24 +131,17 @@ def _unwrap(document: Document) -> Document:
 
 def _content(name: str, limits: Limits) -> tuple[bytes | None, Diagnostic | None]:
     try:
-        status = os.stat(name)
-        if not stat.S_ISREG(status.st_mode):
-            kind = "a directory" if stat.S_ISDIR(status.st_mode) else "a device or pipe, not a file"
-            return None, Diagnostic(
-                "not-a-file", "error", (), f"'{name}' is {kind}", given=name, fix="name a YAML file", file=name
-            )
-        if status.st_size > limits.bytes:
-            return None, _too_large(status.st_size, limits, name)
-        with open(name, "rb") as file:
-            content = file.read(limits.bytes + 1)
-    except FileNotFoundError:
-        return None, Diagnostic("file-not-found", "error", (), f"there is no file '{name}'", given=name, file=name)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        return None, Diagnostic("unreadable", "error", (), f"'{name}' cannot be read: {reason}", given=name, file=name)
-    if len(content) > limits.bytes:
-        return None, _too_large(len(content), limits, name)
-    return content, None
+        return read_bytes(name, limits.bytes), None
+    except FileError as error:
+        if error.code == "file-too-large":
+            return None, _too_large(error.size, limits, name)
+        messages = {
+            "file-not-found": f"there is no file '{name}'",
+            "not-a-file": f"'{name}' {error.message.removeprefix('it ')}",
+        }
+        message = messages.get(error.code, f"'{name}' cannot be read: {error.message}")
+        fix = "name a YAML file" if error.code == "not-a-file" else None
+        return None, Diagnostic(error.code, "error", (), message, given=name, fix=fix, file=name)
 
 
 def _too_large(size: int, limits: Limits, name: str | None) -> Diagnostic:

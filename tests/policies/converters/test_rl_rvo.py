@@ -186,7 +186,7 @@ def test_the_command_converts_and_says_what_is_wrong(file: Path, tmp_path: Path)
         (["rl_rvo", str(file), "--set", "acceleration=1"], "has no option 'acceleration'"),
         (["rl_rvo", str(file), "--set", "acceler=0"], "acceler: 'acceler' must be > 0 [m/s], got 0"),
         (["rl_rvo", str(file), "--set", "acceler"], "is not an option"),
-        (["rl_rvo", str(tmp_path)], "it is not a file"),
+        (["rl_rvo", str(tmp_path)], "it is a folder, not a file"),
     ):
         failed = runner.invoke(app, ["convert", *arguments, "-o", str(out)])
         assert (failed.exit_code, out.read_bytes(), "Traceback" in failed.output) == (2, b"kept", False)

@@ -207,7 +207,7 @@ def test_other_files_are_named_for_what_they_are(tmp_path: Path) -> None:
             read_torch(path)
     large = tmp_path / "large.pth"
     large.write_bytes(bytes(101))
-    with pytest.raises(PolicyFileError, match="the file is too large"):
+    with pytest.raises(PolicyFileError, match="it is too large"):
         read_torch(large, Limits(file_bytes=100))
 
 

@@ -253,14 +253,14 @@ def test_files_that_are_no_policies(tmp_path: Path) -> None:
     for name, message in (
         ("missing.npz", "No such file"),
         ("empty.npz", "does not end as an archive does"),
-        ("folder.npz", "it is not a file"),
-        ("pipe.npz", "it is not a file"),
+        ("folder.npz", "it is a folder, not a file"),
+        ("pipe.npz", "it is a device or pipe, not a file"),
         ("text.txt", "given: .txt, allowed: .npz or .onnx"),
         ("plain.npz", "the JSON document of format irsim-policy is missing"),
     ):
         with pytest.raises(PolicyFileError, match=message):
             open_network(tmp_path / name)
-    with pytest.raises(PolicyFileError, match="the file is too large"):
+    with pytest.raises(PolicyFileError, match=r"it is too large, given: .* bytes, allowed: up to 10"):
         open_network(tmp_path / "plain.npz", limits=Limits(file_bytes=10))
 
 

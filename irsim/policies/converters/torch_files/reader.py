@@ -18,7 +18,7 @@ from irsim.common.records import ContentError
 from irsim.common.text import clean
 from irsim.policies.converters.torch_files.pickles import Storage, Stored, Tensor, read_pickle
 from irsim.policies.networks.errors import LIMITS, Limits, PolicyFileError, content_flaw
-from irsim.policies.networks.files import read_bytes
+from irsim.policies.networks.files import file_bytes
 from irsim.policies.networks.values import Array
 
 __all__ = ["parse_torch", "read_torch"]
@@ -41,7 +41,7 @@ def read_torch(path: str | Path, limits: Limits = LIMITS) -> dict[str, Array]:
     Raises:
         PolicyFileError: It is not such a file, it is over the limits, or a tensor cannot be used.
     """
-    return parse_torch(read_bytes(Path(path), limits.file_bytes, "a file that torch.save wrote"), str(path), limits)
+    return parse_torch(file_bytes(Path(path), limits.file_bytes, "a file that torch.save wrote"), str(path), limits)
 
 
 def parse_torch(content: bytes, source: str, limits: Limits = LIMITS) -> dict[str, Array]:

@@ -14,7 +14,7 @@ from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.policies.networks.document import PolicyHead
 from irsim.policies.networks.errors import Limits, PolicyFileError, PolicyInputError, flaw
-from irsim.policies.networks.files import parse_json, read_bytes
+from irsim.policies.networks.files import file_bytes, parse_json
 from irsim.policies.networks.layout import layout_shapes
 from irsim.policies.networks.network import output_problems, read_document
 from irsim.policies.networks.network_policy import NetworkPolicy, Slots
@@ -173,7 +173,7 @@ def open_onnx(path: Path, content: bytes, facts: Mapping[str, Any], limits: Limi
         if not beside.is_file():
             missing = flaw("", f"the model says neither in its metadata '{METADATA}' nor in a file what it observes")
             raise PolicyFileError(source, [missing], f"write the JSON document to {clean(beside.name)}")
-        source, written = clean(str(beside)), read_bytes(beside, limits.document_bytes)
+        source, written = clean(str(beside)), file_bytes(beside, limits.document_bytes)
     else:
         written = text.encode()
     document: OnnxDocument = read_document(OnnxDocument, parse_json(written, source, limits), source)
