@@ -28,6 +28,7 @@ from tests.foreign import foreign, judge  # noqa: F401  # a fixture
 from tests.warm import schema
 
 ROOT = Path(__file__).resolve().parents[1]
+_ONE_PYTHON = (("benchmarks",), ("packaging",), ("skills",))
 pytest.register_assert_rewrite("tests.core.worlds")  # here, before any module of tests is imported
 # How fast a machine draws and runs examples does not belong to the code.
 settings.register_profile("irsim", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -46,6 +47,12 @@ def pytest_collection(session: pytest.Session) -> None:
     for name in names[int(worker["workerid"][2:]) :: worker["workercount"]]:
         with contextlib.suppress(Exception, pytest.skip.Exception):  # the collection tells
             importlib.import_module(name)
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Processes, texts, numbers of sources and contents of packages are the same on every Python."""
+    if item.path.relative_to(ROOT).parts[1:2] in _ONE_PYTHON:
+        item.add_marker("one_python")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -98,6 +105,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     from xdist.scheduler import WorkStealingScheduling
 
     return WorkStealingScheduling(config, log)
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current directory, which is empty."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
 
 
 @pytest.fixture(autouse=True)

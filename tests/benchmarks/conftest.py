@@ -59,11 +59,6 @@ def write_fragile(folder: Path, name: str, seeds: range, *, always: bool, here: 
     (folder / f"{name}.py").write_text(code, encoding="utf-8")
 
 
-def pytest_itemcollected(item: pytest.Item) -> None:
-    """Processes and their files are the same on every Python."""
-    item.add_marker("one_python")
-
-
 @pytest.fixture(autouse=True)
 def warm_helpers(monkeypatch: pytest.MonkeyPatch) -> None:
     """Further processes of a benchmark have loaded already what takes long."""

@@ -168,14 +168,7 @@ def test_without_a_terminal_progress_is_a_line_from_time_to_time(
 SCENE = "robot: {state: [1, 1], goal: [2, 1], behavior: {name: dash}}\n"
 
 
-@pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty current folder."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-@pytest.mark.usefixtures("here")
+@pytest.mark.usefixtures("workspace")
 def test_without_the_library_terminal_and_report_say_how_to_get_the_table(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("irsim.benchmarks.report.table.find_spec", lambda name: None)
     Path("a.yaml").write_text(SCENE, encoding="utf-8")
@@ -191,7 +184,7 @@ ARRIVES = "robot:\n  - {state: [1, 1], goal: [2, 1], kinematics: {name: diff}, b
 STANDS = "  - {state: [5, 5], goal: [9, 5], kinematics: {name: diff}}\n"
 
 
-@pytest.mark.usefixtures("here")
+@pytest.mark.usefixtures("workspace")
 def test_times_beside_failures_are_those_of_robots_that_arrived() -> None:
     told = {}
     for name, text in (("all", ARRIVES), ("one", ARRIVES + STANDS)):

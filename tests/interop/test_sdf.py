@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +12,7 @@ import irsim
 from irsim.bridges.sdf import SdfWorld
 from irsim.objects.describe import describe_scene
 from tests.bridges.scenes import recorded
+from tests.interop.conftest import with_libsdformat
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("sdf")]
 
@@ -34,15 +34,7 @@ obstacle:
 @pytest.fixture(scope="module")
 def parser(tmp_path_factory: pytest.TempPathFactory) -> Parser:
     """The official parser, compiled once."""
-    compiler, config = shutil.which("g++"), shutil.which("pkg-config")
-    if compiler is None or config is None:
-        pytest.skip("g++ and pkg-config are needed")
-    flags = subprocess.run([config, "--cflags", "--libs", "sdformat12"], capture_output=True, text=True, check=False)
-    if flags.returncode != 0:
-        pytest.skip("libsdformat-dev is needed")
-    program = tmp_path_factory.mktemp("parser") / "check_sdf"
-    source = Path(__file__).with_name("check_sdf.cpp")
-    subprocess.run([compiler, "-std=c++17", str(source), "-o", str(program), *flags.stdout.split()], check=True)
+    program = with_libsdformat("check_sdf", tmp_path_factory.mktemp("parser"))
 
     def parse(*files: Path) -> subprocess.CompletedProcess[str]:
         return subprocess.run([str(program), *map(str, files)], capture_output=True, text=True, check=False)

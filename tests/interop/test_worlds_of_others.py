@@ -6,7 +6,6 @@ Three files for each of SDF (libsdformat), MJCF (MuJoCo and dm_control) and Comm
 from __future__ import annotations
 
 import math
-import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ import pytest
 from irsim.bridges.maps.kinds.commonroad import read
 from irsim.bridges.maps.source import ImportLimits, ImportOptions
 from tests.bridges.maps.occupied import assert_occupied
+from tests.interop.conftest import with_libsdformat
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("worlds")]
 ROOMS = 2 * 10 * 0.2 + 2 * 7.6 * 0.2 + 4 * 0.15
@@ -25,17 +25,8 @@ ROOMS = 2 * 10 * 0.2 + 2 * 7.6 * 0.2 + 4 * 0.15
 @pytest.fixture(scope="module")
 def of_libsdformat(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with three worlds that libsdformat wrote."""
-    compiler, config = shutil.which("g++"), shutil.which("pkg-config")
-    if compiler is None or config is None:
-        pytest.skip("g++ and pkg-config are needed")
-    flags = subprocess.run([config, "--cflags", "--libs", "sdformat12"], capture_output=True, text=True, check=False)
-    if flags.returncode != 0:
-        pytest.skip("libsdformat-dev is needed")
     folder = tmp_path_factory.mktemp("sdf")
-    source = Path(__file__).with_name("write_sdf.cpp")
-    program = str(folder / "write_sdf")
-    subprocess.run([compiler, "-std=c++17", str(source), "-o", program, *flags.stdout.split()], check=True)
-    subprocess.run([program, str(folder)], check=True)
+    subprocess.run([with_libsdformat("write_sdf", folder), folder], check=True)
     return folder
 
 

@@ -92,8 +92,3 @@ def wheel(builder: Environment, sdist: Path, tmp_path_factory: pytest.TempPathFa
     builder.pip("wheel", "--no-build-isolation", "--no-index", "--no-deps", "-w", folder, sdist)
     [archive] = folder.iterdir()
     return archive
-
-
-def pytest_itemcollected(item: pytest.Item) -> None:
-    """Numbers of the sources and contents of packages are the same on every Python."""
-    item.add_marker("one_python")

@@ -29,13 +29,6 @@ CRASH = ROOM.replace("goal: [4, 3, 0]", "goal: [7, 1, 0]").replace("state: [4, 5
 
 
 @pytest.fixture
-def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The current directory."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-@pytest.fixture
 def room(workspace: Path) -> Path:
     """A robot with a lidar that arrives."""
     path = workspace / "room.yaml"

@@ -10,7 +10,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import pytest
 import yaml
 
 from tests.warm import warm
@@ -63,11 +62,6 @@ def script(path: Path, *words: str, folder: Path | None = None, alone: bool = Fa
     assert "Traceback" not in done.stderr
     assert len(done.stdout) < 20_000
     return done.returncode, json.loads(done.stdout) if done.stdout else {"said": done.stderr}
-
-
-def pytest_itemcollected(item: pytest.Item) -> None:
-    """Texts of skills and their programs are the same on every Python."""
-    item.add_marker("one_python")
 
 
 def commands(page: Path) -> list[list[str]]:

@@ -31,12 +31,6 @@ pytestmark = pytest.mark.one_python
 MAP = "image: plan.png\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
 
 
-@pytest.fixture
-def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def problems(folder: Path, map_file: str) -> list[tuple[str, str]]:
     """Codes and messages of the errors of a scenario with a map."""
     scenario = folder / "hall.yaml"

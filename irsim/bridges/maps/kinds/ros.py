@@ -7,7 +7,7 @@ from pathlib import Path
 from irsim.bridges.maps.grid import Grid
 from irsim.bridges.maps.regions import keep_part
 from irsim.bridges.maps.ros_server import MapFileError
-from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Occupancy, known_free
+from irsim.bridges.maps.source import NOT_FLAT, ImportLimits, ImportOptions, Kind, Occupancy, known_free
 from irsim.components.maps._rosmap import find_picture, read_meta, ros_raster
 from irsim.components.maps._site import UNKNOWN, MapProblem, MapSite
 from irsim.scenario.locate import why_outside
@@ -55,21 +55,6 @@ KIND = Kind(
     suffixes=(".yaml", ".yml"),
     accepts=lambda head: b"image" in head or b"resolution" in head,
     read=read,
-    unused=(
-        "resolution",
-        "headroom",
-        "slope",
-        "ground",
-        "climb",
-        "up",
-        "rotate",
-        "level",
-        "height",
-        "meters_per_unit",
-        "opacity",
-        "bounds",
-        "lanes",
-        "root",
-    ),
+    unused=("resolution", *NOT_FLAT, "bounds"),
     unknown="unknown",
 )
