@@ -17,9 +17,11 @@
 - ``interop``: bridges, each against software that somebody else wrote: middleware, simulators, parsers, a browser.
 - ``onnx``: policies from ONNX models, with onnxruntime.
 - ``nightly``: what is too large for every change, and therefore no part of ``full``: Blender reads what we write;
-  each day another tenth of the bench of avoidance; all tests that rotate, of which ``slow`` runs those of the day;
-  ``neupan``, the examples of NeuPAN, where ``NEUPAN_SRC`` names a folder of it.
+  another tenth of the bench of avoidance; more damaged files and races; all tests that rotate, of which ``slow`` runs
+  those of the day. ``neupan``: the examples of NeuPAN, where ``NEUPAN_SRC`` names a folder of it.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
+
+Markers choose the tests of each part, so all parts but ``sanitize`` collect all tests, which takes about 10 s.
 
 All quick tests together run in ``check``, and on the newest Python in the README's own test command, with which
 ``.ci/run`` begins.
@@ -215,6 +217,7 @@ def sanitize(session: nox.Session) -> None:
         "ASAN_OPTIONS": "detect_leaks=0",  # Python keeps what it allocates at start
         "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
     }
+    # The folder, not a marker: these are all tests of one room.
     timed(session, "tests under sanitizers", "pytest", "-n", "auto", "tests/core", env=environment)
 
 
@@ -249,7 +252,7 @@ def browser(session: nox.Session) -> None:
 def evals(session: nox.Session) -> None:
     """Models as agents: inspect_ai against a stand-in of a model's service, recordings and their replay."""
     install(session, "-e", ".[test,evals]")
-    options = ("-m", "evals", "-n", "2", "--dist", "loadfile", "tests/evals/harness", *session.posargs)
+    options = ("-m", "evals", "-n", "2", "--dist", "loadfile", *session.posargs)
     timed(session, "tests of the harness", "pytest", *options)
 
 
@@ -257,29 +260,28 @@ def evals(session: nox.Session) -> None:
 def records(session: nox.Session) -> None:
     """Exports of recorded runs, opened by the tools they are for; heavy libraries that other tests do without."""
     install(session, "-e", ".[test,records]", *TOOLS)
-    folders = ["tests/bridges/export", "tests/benchmarks/test_table_files.py"]
-    timed(session, "tests of exports", "pytest", "-m", "records", "-n", "2", *folders, *session.posargs)
+    timed(session, "tests of exports", "pytest", "-m", "records", "-n", "2", *session.posargs)
 
 
 @nox.session(reuse_venv=True, python=find_python(NEWEST))
 def onnx(session: nox.Session) -> None:
     """Policies from ONNX models, with onnxruntime, which other tests do without."""
     install(session, "-e", ".[test,onnx]")
-    timed(session, "tests of ONNX models", "pytest", "-m", "onnx", "tests/policies/onnx", *session.posargs)
+    timed(session, "tests of ONNX models", "pytest", "-m", "onnx", *session.posargs)
 
 
 @nox.session(reuse_venv=True, python=find_python(NEWEST))
 def cluster(session: nox.Session) -> None:
     """Benchmarks on local Ray clusters of several processes: the files are those of a local run."""
     install(session, "-e", ".[test,cluster]")
-    timed(session, "tests on clusters", "pytest", "-m", "cluster", "tests/benchmarks/cluster", *session.posargs)
+    timed(session, "tests on clusters", "pytest", "-m", "cluster", *session.posargs)
 
 
 @nox.session(reuse_venv=True, python=find_python(NEWEST))
 def learn(session: nox.Session) -> None:
     """Environments of TorchRL and Stable-Baselines3, and training; torch takes minutes to install and gigabytes."""
     install(session, "-e", ".[test,learn,onnx]", VIDEOS)
-    timed(session, "tests of learning", "pytest", "-m", "learn", "-n", "2", "tests/learning/torch", *session.posargs)
+    timed(session, "tests of learning", "pytest", "-m", "learn", "-n", "2", *session.posargs)
 
 
 @nox.session(reuse_venv=True, python=find_python(INTEROP))
@@ -289,31 +291,21 @@ def interop(session: nox.Session) -> None:
     install(session, "-e", f".[test,{extras}]", PLAYWRIGHT, *PYTHON_PEERS)
     install_debian(session, DEBIAN_PEERS)
     peers = {"IRSIM_INTEROP": "required", "IRSIM_SPARK": install_npm(session, NPM_PEERS)}
-    options = ("-m", "interop", "-n", "2", "--dist", "loadgroup", "--durations", "15", "tests/interop")
+    options = ("-m", "interop", "-n", "2", "--dist", "loadgroup", "--durations", "15")
     timed(session, "tests of bridges", "pytest", *options, *session.posargs, env=peers)
 
 
 @nox.session(reuse_venv=True, python=find_python(INTEROP))
 def nightly(session: nox.Session) -> None:
-    """Stages of OpenUSD, read by Blender, which is 947 MB, and a tenth of avoidance. No part of ``full``."""
+    """All tests that rotate, and those that try more at night or need Blender, which is 947 MB. No part of ``full``."""
     install(session, "-e", ".[test,usd,records,bag,mesh,plans]")
     blender = Path(session.virtualenv.location, "blender").resolve() / "bin" / "python"
     if not blender.exists():
         session.run("python", "-m", "venv", str(blender.parents[1]))
     timed(session, "install Blender", str(blender), "-m", "pip", "install", "-q", BLENDER, external=True)
-    peers = {"IRSIM_INTEROP": "required", "IRSIM_NIGHTLY": "1", "IRSIM_BPY": str(blender)}
-    options = ("-m", "slow", "--durations", "5", "tests/interop/test_blender.py")
-    timed(session, "tests with Blender", "pytest", *options, *session.posargs, env=peers)
-    options = ("-m", "slow", "-n", "2", "tests/parity/avoidance/test_reference.py")
-    timed(session, "another tenth of avoidance", "pytest", *options, env={"IRSIM_NIGHTLY": "1"})
-    rotating = ("-m", "rotates", "-n", "2", "--dist", "loadgroup", "--durations", "15")
-    timed(session, "tests that rotate", "pytest", *rotating, env={"IRSIM_TESTS": "thorough"})
-    damaged = ("-m", "slow", "-n", "2", "tests/fuzz/damaged", "--durations", "5")
-    timed(session, "10,000 damages of each kind of file", "pytest", *damaged, env={"IRSIM_NIGHTLY": "1"})
-    damaged = ("-m", "interop", "-n", "2", "tests/interop/test_damaged_files.py", "--durations", "5")
-    timed(session, "1,667 to 10,000 damages of other kinds", "pytest", *damaged, env={"IRSIM_NIGHTLY": "1"})
-    raced = ("-m", "slow", "-n", "2", "tests/mcp/test_links.py")
-    timed(session, "2,000 races with links", "pytest", *raced, env={"IRSIM_NIGHTLY": "1"})
+    options = ("-m", "nightly or rotates", "-n", "2", "--dist", "loadgroup", "--durations", "25", *session.posargs)
+    environment = {"IRSIM_NIGHTLY": "1", "IRSIM_TESTS": "thorough", "IRSIM_BPY": str(blender)}
+    timed(session, "tests of the night", "pytest", *options, env=environment)
     session.notify("neupan")
 
 
@@ -325,8 +317,7 @@ def neupan(session: nox.Session) -> None:
         session.log("NEUPAN_SRC names no folder of NeuPAN, which is on no registry: its examples were not driven")
         return
     install(session, "-e", ".[test]", "-e", source)
-    options = ("-m", "slow", "-s", "tests/interop/test_neupan.py")
-    timed(session, "examples of NeuPAN", "pytest", *options, *session.posargs, env={"IRSIM_INTEROP": "required"})
+    timed(session, "examples of NeuPAN", "pytest", "-m", "neupan", "-s", *session.posargs)
 
 
 def install_debian(session: nox.Session, packages: Iterable[str]) -> None:

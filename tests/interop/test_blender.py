@@ -1,7 +1,7 @@
 """Blender reads stages that we write: where bodies are over time, which meshes and cameras there are.
 
 ``nox -s nightly`` installs Blender (bpy 4.5, 947 MB from PyPI, Python 3.11) and runs them. With a Python that has it:
-``IRSIM_NIGHTLY=1 IRSIM_BPY=/path/of/python pytest -m slow tests/interop/test_blender.py``.
+``IRSIM_NIGHTLY=1 IRSIM_BPY=/path/of/python pytest -m nightly tests/interop/test_blender.py``.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from irsim.bridges.recorded import recorded_states
 from tests.bridges.scenes import record_stage
 
 pytestmark = [
+    pytest.mark.nightly,
     pytest.mark.slow(30),
     pytest.mark.skipif(
         os.environ.get("IRSIM_NIGHTLY") != "1", reason="Blender (bpy) is 947 MB: nox -s nightly runs it"

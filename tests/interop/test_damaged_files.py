@@ -25,7 +25,7 @@ from tests.fuzz.damaged.test_damaged import NIGHT, try_ways
 from tests.interop.ros.test_import_bag import write_first_bag
 from tests.warm import warm
 
-pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("damaged")]
+pytestmark = [pytest.mark.interop, pytest.mark.nightly, pytest.mark.xdist_group("damaged")]
 ezdxf = pytest.importorskip("ezdxf")
 trimesh = pytest.importorskip("trimesh")
 for _name in ("collada", "svgelements", "rosbags"):

@@ -17,7 +17,7 @@ from tests.fuzz.damaged.kind import read_map_of
 from tests.fuzz.damaged.test_damaged import read
 from tests.fuzz.damaged.ways import damaged
 
-pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("usd")]
+pytestmark = [pytest.mark.interop, pytest.mark.nightly, pytest.mark.xdist_group("usd")]
 pytest.importorskip("pxr")
 
 _WAYS = 100 if os.environ.get("IRSIM_NIGHTLY") else 5

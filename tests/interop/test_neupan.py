@@ -20,6 +20,7 @@ from irsim.policies import open_policy
 SOURCE = os.environ.get("NEUPAN_SRC")
 pytestmark = [
     pytest.mark.filterwarnings("ignore"),  # NeuPAN and its solvers warn
+    pytest.mark.neupan,
     pytest.mark.slow(150),
     pytest.mark.skipif(not SOURCE, reason="NEUPAN_SRC names no folder of NeuPAN: nox -s neupan runs it"),
 ]

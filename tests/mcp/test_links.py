@@ -173,6 +173,7 @@ def races(place: Place, call: str, number: int) -> None:
         assert not place.double.changes(), what
 
 
+@pytest.mark.nightly
 @pytest.mark.slow(15)
 @pytest.mark.rotates(12)
 @pytest.mark.parametrize("call", CALLS)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import pytest
@@ -25,6 +26,18 @@ from tests.packaging import house
 )
 def test_one_idea_has_one_home(find: Callable[[], list[str]], most: int) -> None:
     assert len(find()) <= most, find()
+
+
+def test_markers_choose_the_tests_of_a_session() -> None:
+    """Only the tests under sanitizers are those of a folder."""
+    assert re.findall(r"tests/[\w/.]+", (house.ROOT / "noxfile.py").read_text(encoding="utf-8")) == ["tests/core"]
+
+
+def test_tests_that_do_more_at_night_run_at_night() -> None:
+    texts = {path: path.read_text(encoding="utf-8") for path in (house.ROOT / "tests").rglob("test_*.py")}
+    reading = {path: text for path, text in texts.items() if re.search(r"environ.*IRSIM_NIGHTLY", text)}
+    assert [str(path) for path, text in reading.items() if "mark.nightly" not in text] == []
+    assert len(reading) >= 5
 
 
 def test_imports_inside_functions_are_few() -> None:

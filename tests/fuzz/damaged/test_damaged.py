@@ -39,6 +39,7 @@ def test_some_damages(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     try_ways(name, KINDS[name], tmp_path, range(max(1, QUICK // KINDS[name].share)))
 
 
+@pytest.mark.nightly
 @pytest.mark.slow(30)
 @pytest.mark.parametrize("name", KINDS)
 def test_many_damages(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -226,6 +226,7 @@ def test_some_groups_are_the_kept_ones(tmp_path: Path) -> None:
     assert different(short, tmp_path) == []
 
 
+@pytest.mark.nightly
 @pytest.mark.slow(20)
 @pytest.mark.parametrize("behavior", BEHAVIORS)
 def test_a_tenth_is_the_kept_one(behavior: str, tmp_path: Path) -> None:
