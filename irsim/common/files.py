@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import rmtree
+from tempfile import TemporaryDirectory
 from typing import TypeAlias
 
 from irsim.common.held import elsewhere
@@ -24,6 +25,7 @@ __all__ = [
     "code_of",
     "create_bytes",
     "is_disk_full",
+    "is_stream",
     "make_folder_of",
     "new_folder",
     "replace_bytes",
@@ -84,7 +86,7 @@ def check_new(target: Path, *, overwrite: bool) -> None:
 
     Args:
         target: The file.
-        overwrite: It may be replaced.
+        overwrite: It may be replaced; a device or a pipe is written to without that.
 
     Raises:
         TargetError: The file exists and ``overwrite`` is not set, or it is a folder, or a part of its path is a file.
@@ -94,7 +96,7 @@ def check_new(target: Path, *, overwrite: bool) -> None:
         raise _no_folder(above)
     if target.is_dir():
         raise TargetError("file-exists", f"'{clean(target, 200)}' is a folder", "name another file with -o")
-    if not overwrite and os.path.lexists(target):
+    if not overwrite and os.path.lexists(target) and not is_stream(target):
         raise TargetError(
             "file-exists", f"'{clean(target, 200)}' exists", "--force overwrites it, -o names another file"
         )
@@ -129,7 +131,7 @@ def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:
     """
     check_new(target, overwrite=overwrite)
     make_folder_of(target)
-    if not overwrite:
+    if not overwrite and not is_stream(target):
         try:
             target.open("x").close()  # claims the name, also against another process
         except FileExistsError:
@@ -138,7 +140,7 @@ def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:
     try:
         write_atomically(target, text)
     except BaseException:
-        if not overwrite:
+        if not overwrite and not is_stream(target):
             with suppress(OSError):
                 target.unlink()
         raise
@@ -147,18 +149,34 @@ def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:
 def write_atomically(target: Path, text: str) -> None:
     """Replace a text file in one step; links are followed, and the permissions of the file stay.
 
-    Devices and pipes, such as ``/dev/null``, are written to; they are not replaced by a file.
+    Devices and pipes are written to, as by :func:`replace_bytes`.
 
     Args:
         target: The file.
         text: Its new content.
     """
-    target = target.resolve()
-    if target.exists() and not target.is_file() and not target.is_dir():
-        target.write_bytes(text.encode())
-        return
-    mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
+    if not is_stream(target):
+        target = target.resolve()
+    mode = stat.S_IMODE(target.stat().st_mode) if target.is_file() else None
     replace_bytes(target, text.encode(), mode=mode)
+
+
+def is_stream(target: str | Path) -> bool:
+    """Whether a name is that of a device, pipe or socket, such as ``/dev/null``, which no file may replace."""
+    try:
+        mode = os.stat(target).st_mode
+    except OSError:
+        return False
+    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
+
+
+def _write_stream(target: str | Path, *parts: Buffer) -> None:
+    """Write to a device or a pipe; a pipe that nobody reads is waited for."""
+    descriptor = os.open(target, os.O_WRONLY)
+    try:
+        write_all(descriptor, *parts)
+    finally:
+        os.close(descriptor)
 
 
 def replace_bytes(target: str | Path, *parts: Buffer, mode: int | None = 0o600) -> None:
@@ -167,8 +185,12 @@ def replace_bytes(target: str | Path, *parts: Buffer, mode: int | None = 0o600) 
     Args:
         target: The file; its folder must exist.
         *parts: Its new content.
-        mode: Permissions; None for the usual permissions of new files.
+        mode: Permissions; None for a file that a user names: it gets the usual permissions of new files, and a device
+            or a pipe of that name is written to.
     """
+    if mode is None and is_stream(target):
+        _write_stream(target, *parts)
+        return
     head, separator, _ = os.fspath(target).rpartition(os.sep)
     temporary = f"{head}{separator}{TEMPORARY}{os.urandom(4).hex()}"
     try:
@@ -220,11 +242,17 @@ def replacing(path: Path, *, overwrite: bool = True) -> Iterator[Path]:
     """Yield a temporary file beside ``path``, which replaces it if the block succeeds and is deleted otherwise.
 
     This is for encoders that open files by name; the temporary file has the suffix of the path. The folder is made if
-    it does not exist. In a folder that is held, the encoder's file is elsewhere and is copied.
+    it does not exist. In a folder that is held, the encoder's file is elsewhere and is copied. A device or a pipe gets
+    the content of the temporary file, which then is in another folder.
 
     Raises:
         TargetError: Without ``overwrite``, the file exists now, because another program has written it meanwhile.
     """
+    if is_stream(path):
+        with TemporaryDirectory(prefix="irsim-") as folder:
+            yield Path(folder, path.name)
+            _write_stream(path, Path(folder, path.name).read_bytes())
+        return
     make_folder_of(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
     try:
@@ -277,7 +305,13 @@ def _name(temporary: Path, path: Path) -> None:
 
 @contextmanager
 def new_folder(target: Path) -> Iterator[Path]:
-    """Yield a temporary folder beside ``target``, which gets that name if the block succeeds, else is deleted."""
+    """Yield a temporary folder beside ``target``, which gets that name if the block succeeds, else is deleted.
+
+    Raises:
+        TargetError: There is a file, a device or a pipe of that name.
+    """
+    if target.exists() and not target.is_dir():
+        raise TargetError("file-exists", f"'{clean(target, 200)}' is not a folder", "name another folder with -o")
     make_folder_of(target)
     temporary = target.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
     try:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -68,3 +71,49 @@ def test_a_training_without_a_finished_round_does_not_block_its_folder(tmp_path:
     run.begin(opened, folder, {}, TrainingSettings(seed=1))
     run.begin(opened, folder, {}, TrainingSettings(seed=2))
     assert run.settings().seed == 2
+
+
+class Model:
+    """A model of two bytes for each round."""
+
+    def __init__(self, content: bytes) -> None:
+        self.content = content
+
+    def save(self, file: Any) -> None:
+        file.write(self.content)
+
+
+@pytest.mark.parametrize("step", ["model", "progress", "name"])
+def test_a_training_that_stops_while_it_saves_goes_on_from_its_last_finished_round(
+    step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each step of saving a round fails, and what is read again is of one round."""
+    run, facts = RunFolder(tmp_path), {"learners": 0.5, "reward": 1.0}
+    run.save(Model(b"r1"), facts, best=True)
+    names = {"model": ("next-2.zip", "latest.zip"), "progress": ("progress.jsonl",), "name": ("latest.zip",)}[step]
+    rename = os.replace
+
+    def full(source: Any, target: Any) -> None:
+        if Path(target).name in names:
+            raise OSError(errno.ENOSPC, "No space left on device", str(target))
+        rename(source, target)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "replace", full)
+        with pytest.raises(OSError, match="No space"):
+            run.save(Model(b"r2"), facts, best=False)
+    rounds = len(run.rounds())
+    assert rounds == (2 if step == "name" else 1)
+    assert run.settle().read_bytes() == f"r{rounds}".encode()
+    run.save(Model(b"r9"), facts, best=False)
+    assert (len(run.rounds()), run.settle().read_bytes()) == (rounds + 1, b"r9")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["best.zip", "latest.zip", "progress.jsonl"]
+
+
+def test_what_a_killed_training_left_is_deleted(tmp_path: Path) -> None:
+    run = RunFolder(tmp_path)
+    run.save(Model(b"r1"), {}, best=True)
+    for name in (".latest.123-7f.zip", ".next-2.123-7f.zip", "next-2.zip"):
+        (tmp_path / name).write_bytes(b"half")
+    assert run.settle().read_bytes() == b"r1"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["best.zip", "latest.zip", "progress.jsonl"]

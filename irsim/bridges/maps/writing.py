@@ -19,7 +19,7 @@ from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.sidecar import MapSidecar, sidecar_path
 from irsim.bridges.maps.source import Occupancy, known_free
 from irsim.common.arrays import Floats
-from irsim.common.files import TargetError, check_new, create_bytes, make_folder_of, replace_bytes
+from irsim.common.files import TargetError, check_new, create_bytes, is_stream, make_folder_of, replace_bytes
 from irsim.common.text import decimal
 from irsim.components.maps._rosmap import RosMeta, pixels_of
 from irsim.scenario.yaml.modeline import with_modeline
@@ -205,7 +205,7 @@ def write_all_or_none(contents: list[tuple[Path, bytes]], *, overwrite: bool) ->
     try:
         for path, content in contents:
             new = not os.path.lexists(path)
-            if overwrite:
+            if overwrite or is_stream(path):
                 replace_bytes(path, content, mode=None)
             else:
                 create_bytes(path, content, mode=0o666)

@@ -37,7 +37,8 @@ class RunFolder:
     """Files of a training.
 
     ``task.yaml``, its scenario ``scenario.yaml`` and ``settings.yaml`` say what was asked for, ``progress.jsonl`` has a
-    line for each round, ``latest.zip`` and ``best.zip`` are models of the algorithm.
+    line for each round, ``latest.zip`` and ``best.zip`` are models of the algorithm. The model of a round is
+    ``next-N.zip`` until ``progress.jsonl`` has its line, so that a training goes on from the last finished round.
 
     Args:
         path: The folder.
@@ -139,11 +140,28 @@ class RunFolder:
             facts: Facts of the round.
             best: Whether it is the best so far.
         """
-        for target in [self.best, self.latest] if best else [self.latest]:
+        lines = [json.dumps(one) for one in [*self.rounds(), facts]]
+        following = self._following(len(lines))
+        for target in [following, self.best] if best else [following]:
             with replacing(target) as temporary, temporary.open("wb") as file:
                 model.save(file)
-        lines = [json.dumps(one) for one in [*self.rounds(), facts]]
         write_atomically(self._progress, "\n".join(lines) + "\n")
+        os.replace(following, self.latest)
+
+    def settle(self) -> Path:
+        """The model of the last finished round; what a kill or a full disk has left of another one is deleted.
+
+        Only for who has claimed the folder.
+        """
+        finished = self._following(len(self.rounds()))
+        if finished.exists():
+            os.replace(finished, self.latest)
+        for left in (*self.path.glob("next-*.zip"), *self.path.glob(".*.zip")):
+            left.unlink()
+        return self.latest
+
+    def _following(self, number: int) -> Path:
+        return self.path / f"next-{number}.zip"
 
 
 @contextmanager

@@ -136,7 +136,7 @@ def _run_rounds(
             model = _model(env, opened, settings)
         else:
             with loading(run.latest):
-                model = PPO.load(run.latest, env, device="cpu")
+                model = PPO.load(run.settle(), env, device="cpu")
     model.set_logger(configure(str(run.path / "tensorboard"), ["tensorboard"]))
     per_round = settings.rollout * env.num_envs * settings.round_updates
     rounds = max(1, -(-settings.steps // per_round))

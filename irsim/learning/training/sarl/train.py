@@ -174,7 +174,7 @@ def train_sarl(
     trainer = _Trainer(task, plan, settings, threads, max(1, -(-settings.slots // one.learners)), one.eyes.size)
     done = run.rounds()
     if done:
-        trainer.model.load(run.latest)
+        trainer.model.load(run.settle())
     best = max(map(merit, done), default=(-1.0, 0.0))
     counted, before = (done[-1]["steps"], done[-1]["seconds"]) if done else (0, 0.0)
     while not done or counted < settings.steps:
