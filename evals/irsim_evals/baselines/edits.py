@@ -11,8 +11,8 @@ import yaml
 
 from irsim.bundled.templates.fill import format_value, replace_values
 from irsim.common.text import plural
-from irsim.common.yaml.tree import LOADER, node_at
 from irsim.diagnostics.diagnostic import Path
+from irsim.scenario.yaml.entries import add_entry
 from irsim_evals.baselines.language import BEHAVIORS, DRIVES, NOUNS, first, has, plain, quantities
 from irsim_evals.baselines.layouts import lidar
 from irsim_evals.baselines.request import request_of
@@ -86,30 +86,12 @@ def add(text: str, path: Path, key: str, value: Any) -> str:
         value: The item.
 
     Raises:
-        KeyError: There is no mapping at the path, or the key holds something else.
+        KeyError: Nothing can be added there.
     """
-    node = node_at(yaml.compose(text, Loader=LOADER), path)
-    if not isinstance(node, yaml.MappingNode):
-        raise KeyError(path)
-    held = next((child for name, child in node.value if name.value == key), None)
-    if held is None:
-        return _insert(text, node, f"{key}: {format_value([value])}")
-    if not isinstance(held, yaml.SequenceNode):
+    added = add_entry(text, key, [format_value(value)], prefix=path)
+    if added is None:
         raise KeyError(key)
-    return _insert(text, held, format_value(value) if held.flow_style else f"- {format_value(value)}")
-
-
-def _insert(text: str, node: yaml.CollectionNode, new: str) -> str:
-    """Insert something behind the last item of a mapping or a list."""
-    last = node.value[-1][1] if isinstance(node, yaml.MappingNode) else node.value[-1] if node.value else None
-    if node.flow_style or last is None:
-        at = node.end_mark.index - 1
-        before = text[:at].rstrip()
-        return before + (", " if last is not None else "") + new + text[at:]
-    at = len(text[: last.end_mark.index].rstrip())
-    line_end = text.find("\n", at)
-    at = len(text) if line_end < 0 else line_end
-    return text[:at] + "\n" + " " * node.start_mark.column + new + text[at:]
+    return added
 
 
 def is_unclear(request: str) -> bool:
