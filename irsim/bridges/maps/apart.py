@@ -25,7 +25,7 @@ from irsim.common.extras import ExtraError
 from irsim.common.held import for_children
 from irsim.diagnostics.errors import CodedError
 
-__all__ = ["Refused", "read_apart", "serve", "shared_folder"]
+__all__ = ["Refused", "read_apart", "serve"]
 
 _MEMORY = 12 * 1024**3
 """Address space of the process [bytes]."""
@@ -113,9 +113,3 @@ def serve(read: Callable[[Path, dict[str, Any]], tuple[Triangles, dict[str, Any]
         answer = {"error": f"it is damaged ({type(error).__name__}: {lines[-1][:150]})"}
     print("\n" + json.dumps(answer), flush=True)
     os._exit(0)  # what the library does at its end can fail, and nothing is left to do
-
-
-def shared_folder(one: Path, other: Path) -> Path | None:
-    """The smallest folder that contains two others, which ``--root`` may name; None if that is a whole disk."""
-    folder = next((above for above in (one, *one.parents) if other.is_relative_to(above)), None)
-    return None if folder is None or folder == folder.parent else folder

@@ -11,8 +11,8 @@ from typing import Any
 from urllib.parse import unquote
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.apart import shared_folder
 from irsim.bridges.maps.kinds._gltf_scene import MESHOPT, SceneReader
+from irsim.bridges.maps.named_files import lies_in, with_root
 from irsim.bridges.maps.source import ImportLimits, unusable
 from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
@@ -179,12 +179,11 @@ def _named_file(files: _Files, uri: str, binary: int | None) -> int:
     why = "a .glb has all in itself" if binary is not None else None
     if why is None and re.match(r"[A-Za-z][A-Za-z0-9+.-]*:", name):
         why = "addresses are not followed"
-    if why is None and not (files.root is not None and file.resolve().is_relative_to(files.root)):
+    if why is None and not lies_in(file, [files.root]):
         outside = why_outside(name, path.parent)
         why = None if outside is None else f"the name {outside}"
-        shared = shared_folder(path.resolve().parent, file.resolve().parent) if name.isprintable() else None
-        if outside is not None and shared is not None:
-            fix = f"give --root {clean(str(shared), 300)} if its files there may be read, or {fix}"
+        if outside is not None and name.isprintable():
+            fix = with_root(fix, path.resolve().parent, file)
     if why is not None:
         raise BridgeError("bridge-file", f"'{path.name}' refers to '{shown}', which is not read: {why}", fix)
     if not file.is_file():

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ET
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 
+from irsim.bridges.maps.named_files import readable
 from irsim.bridges.maps.source import ImportLimits, unusable
 from irsim.bridges.maps.xml_files import find_numbers, read_xml
 from irsim.common.arrays import Floats
@@ -30,13 +30,9 @@ def inside(folder: Path, name: Path, root: str | None) -> Path | None:
         name: The path that the model gives.
         root: Folder with models; None for none.
     """
-    roots = [Path(one).resolve() for one in (folder, root) if one is not None]
-    for start in roots:
-        target = (start / name).resolve()
-        with suppress(OSError):  # such as a name that is too long
-            if target.is_file() and any(one in target.parents for one in roots):
-                return target
-    return None
+    folders = [folder, *([] if root is None else [Path(root)])]
+    files = (readable(start / name, folders) for start in folders)
+    return next((file for file in files if file is not None and file.is_file()), None)
 
 
 def whole_model(path: Path, root: str | None, limits: ImportLimits) -> tuple[ET.Element, list[Path]]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import os
 import xml.etree.ElementTree as ET
-from contextlib import suppress
 from pathlib import Path, PurePosixPath
 
 import numpy as np
 
 from irsim.bridges.frames import turn_of
+from irsim.bridges.maps.named_files import readable
 from irsim.bridges.maps.source import ImportLimits, unusable
 from irsim.bridges.maps.xml_files import find_numbers, read_xml
 from irsim.common.arrays import Floats
@@ -127,13 +127,8 @@ def find_file(uri: str, beside: Path, root: str | None, limits: ImportLimits) ->
     tried = [] if matches and scheme != "file" else [(here, here / name)]
     tried += [(here, here.joinpath(*parts[1:]))] if matches and parts[:1] == [here.name] else []
     tried += [(folder, folder.joinpath(*parts)) for folder in folders]
-    for folder, candidate in tried:
-        inside = folder.resolve()
-        target = candidate.resolve()
-        with suppress(OSError):  # such as a name that is too long
-            if target.exists() and (target == inside or inside in target.parents):
-                return target
-    return None
+    files = (readable(candidate, [folder]) for folder, candidate in tried)
+    return next((file for file in files if file is not None), None)
 
 
 def model_of(path: Path, limits: ImportLimits) -> tuple[Path, ET.Element] | None:

@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from irsim.bridges.maps.apart import Refused, shared_folder
+from irsim.bridges.maps.apart import Refused
+from irsim.bridges.maps.named_files import lies_in, with_root
 from irsim.common.extras import require
 from irsim.common.text import clean
 
@@ -146,9 +147,8 @@ class Layers:
 
     def _inside(self, target: str) -> bool:
         """Whether a file lies below the folder of the stage, or below the root."""
-        folders = [self.path.resolve().parent, *([self.root] if self.root is not None else [])]
         file = _file_of(target)
-        return os.path.isabs(file) and any(Path(file).resolve().is_relative_to(folder) for folder in folders)
+        return os.path.isabs(file) and lies_in(Path(file), [self.path.resolve().parent, self.root])
 
     def _check_place(self, asset: str, target: str) -> None:
         """Refuse a reference to a file that may not be read."""
@@ -160,9 +160,7 @@ class Layers:
             return
         fix = flattening(self.path)
         if not address:
-            shared = shared_folder(self.path.resolve().parent, Path(_file_of(place)).resolve().parent)
-            if shared is not None:
-                fix = f"give --root {clean(str(shared), 300)} if its files there may be read, or {fix}"
+            fix = with_root(fix, self.path.resolve().parent, Path(_file_of(place)))
         what = f"it refers to '{clean(asset, _SHOWN)}', which is outside of its folder"
         raise Refused(f"{what}{'' if self.root is None else ' and of the root'} and is not read", fix)
 
