@@ -267,14 +267,8 @@ def _is_guess(fix: str) -> bool:
 
 def _explain(failure: ValidationError, document: Document, model: type[BaseModel]) -> list[Diagnostic]:
     """The problems of a validation, one for each key; a key with several forms is explained with these forms."""
-    problems: dict[Path_, Diagnostic] = {}
-    for item in failure.errors(include_url=False):
-        if (special := _special(tuple(item["loc"]), document.data)) is not None:
-            problems.setdefault(special.path, special)
-    for problem in explained(failure, document, model):
-        if _special(tuple(problem.path), document.data) is None:
-            problems.setdefault(problem.path, problem)
-    return list(problems.values())
+    problems = explained(failure, document, model, lambda place: _special(place, document.data))
+    return list({problem.path: problem for problem in reversed(problems)}.values())[::-1]
 
 
 def _special(path: Path_, data: Any) -> Diagnostic | None:

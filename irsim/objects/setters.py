@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 from pydantic import ValidationError
 
+from irsim.scenario.messages.translate import option_problems
+
 if TYPE_CHECKING:
     from irsim.objects.base import SimObject
 
@@ -237,7 +239,8 @@ def changed_options(options: Any, owner: str, **changed: Any) -> Any:
         return type(options).model_validate({**options.model_dump(exclude_unset=True), **given})
     except ValidationError as error:
         (name,) = changed
-        raise ValueError(f"{name!r} of {owner}: {error.errors()[0]['msg']}") from None
+        first = option_problems(error, {**options.model_dump(exclude_unset=True), **given}, type(options))[0]
+        raise ValueError(f"{name!r} of {owner}: {first.message}") from None
 
 
 class FixedList(list[Any]):

@@ -16,12 +16,13 @@ from pydantic import BaseModel, Field, ValidationError
 
 from irsim.common.hashing import digest
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.diagnostic import format_path, nearest
 from irsim.results.run import RunResult
 from irsim.runs.chunks import Layout, load_chunk, load_events
 from irsim.runs.files import DIGEST_LENGTH, RunError, json_of, plain_file, text_of, unreadable
 from irsim.runs.plain_scenario import with_options
 from irsim.runs.store import META, RESULT, Status, find_run, omission_notes, run_folders, runs_folder, status_of
+from irsim.scenario.messages.translate import option_problems
 from irsim.simulation.events import Event
 from irsim.simulation.trace import Trace, cut_trace, join_traces
 
@@ -268,7 +269,7 @@ def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> R
     try:
         _Meta.model_validate(meta)
     except ValidationError as error:
-        key = str(error).splitlines()[1]
+        key = format_path(option_problems(error, meta, _Meta)[0].path)
         raise unreadable(f"run.json of run {folder.name} has been changed: see its key '{clean(key)}'") from None
     return Run(folder, meta)
 

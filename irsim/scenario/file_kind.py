@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from irsim.common.json_output import schema_of_file
 from irsim.diagnostics.diagnostic import Diagnostic, is_slip_of
-from irsim.scenario.messages.translate import located, translate
+from irsim.scenario.messages.translate import Special, located, translate
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
 __all__ = ["MOST_PROBLEMS", "FileKind", "explained", "schema_text"]
@@ -22,9 +22,14 @@ MOST_PROBLEMS = 10
 Model = TypeVar("Model", bound=BaseModel)
 
 
-def explained(failure: ValidationError, document: Document, model: type[BaseModel]) -> list[Diagnostic]:
-    """The errors of a validation in the words of scenarios, without their lines."""
-    findings = translate(failure, document.data, document, MOST_PROBLEMS, model)
+def explained(
+    failure: ValidationError,
+    document: Document,
+    model: type[BaseModel],
+    special: Special = lambda _: None,
+) -> list[Diagnostic]:
+    """The errors of a validation in the words of scenarios, without their lines; arguments as for ``translate``."""
+    findings = translate(failure, document.data, document, MOST_PROBLEMS, model, special)
     return [item.diagnostic for item in findings]
 
 

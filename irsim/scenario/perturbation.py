@@ -13,11 +13,12 @@ from pydantic_core import CoreSchema, core_schema
 
 from irsim.common.arguments import as_given
 from irsim.common.text import clean, listed
-from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.diagnostic import Diagnostic, nearest
 from irsim.diagnostics.errors import InputError
 from irsim.options.base import Options
 from irsim.options.units import Meters, Number, Radians, Seconds
 from irsim.scenario.messages.number_text import read_number
+from irsim.scenario.messages.translate import option_problems
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Spreads
 from irsim.scenario.yaml.document import load_text
 from irsim.scenario.yaml.rewrite import yaml_flow
@@ -195,7 +196,7 @@ def _read_one(item: Any) -> tuple[Perturbation | None, list[str]]:
     try:
         made = Perturbation.model_validate(dict(keys))
     except ValidationError as failure:
-        return None, list(dict.fromkeys(_problem(error, keys) for error in failure.errors(include_url=False)))
+        return None, list(dict.fromkeys(_problem(item, keys) for item in option_problems(failure, keys, Perturbation)))
     if all(getattr(made, key) is None for key in _SPREADS):
         return None, [f"{as_given(item)} has no spread"]
     return made, []
@@ -224,15 +225,15 @@ def _read_text(text: str) -> tuple[dict[str, Any] | None, list[str]]:
     return fields, problems
 
 
-def _problem(error: Any, keys: Mapping[Any, Any]) -> str:
-    key = str(error["loc"][0]) if error["loc"] else ""
-    if error["type"] in ("extra_forbidden", "invalid_key"):
+def _problem(item: Diagnostic, keys: Mapping[Any, Any]) -> str:
+    key = str(item.path[0]) if item.path else ""
+    if item.code == "unknown-key":
         near = nearest(key, _ALLOWED)
         return f"{as_given(key)} is not a key of perturb" + (f", did you mean {near}?" if near else "")
     value = keys.get(key)
     hint = ""
-    if key == "heading" and isinstance(error["input"], (int, float)) and 3.1416 < error["input"] <= 180:
-        hint = f" ({error['input']:g} degrees are {error['input']:g}deg)"
+    if key == "heading" and isinstance(item.given, (int, float)) and 3.1416 < item.given <= 180:
+        hint = f" ({item.given:g} degrees are {item.given:g}deg)"
     return f"{key} must be {_ALLOWED.get(key, 'something else')}, got {as_given(value)}{hint}"
 
 

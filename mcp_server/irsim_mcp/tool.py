@@ -107,13 +107,14 @@ class StrictTool(Tool):
         raise failure("bad-argument", what, where=where, fix=fix)
 
     def _refused(self, error: ValidationError, arguments: Mapping[str, Any]) -> ToolError:
-        first = error.errors()[0]
-        path = [str(part) for part in first["loc"]]
-        name = path[0] if path else self.name
+        from irsim.scenario.messages.translate import option_problems  # needs NumPy, which the server starts without
+
+        first = option_problems(error, arguments, self.fn_metadata.arg_model)[0]
+        name = str(first.path[0]) if first.path else self.name
         return failure(
             "bad-argument",
-            f"{_shown(arguments.get(name))} is not accepted: {first['msg'].lower()}",
-            where=".".join(path) or self.name,
+            f"{_shown(arguments.get(name))} is not accepted: {first.message}",
+            where=format_path(first.path) or self.name,
             fix=_accepted(self.parameters["properties"].get(name, {})),
         )
 

@@ -97,8 +97,8 @@ def files_with(pattern: str) -> list[str]:
 
 
 def translators() -> list[str]:
-    """Files that turn errors of pydantic, which have a ``loc``, into findings."""
-    return files_with(r"\[[\"']loc[\"']\]")
+    """Files that read the list of errors of pydantic, or lines of its text below the first."""
+    return files_with(r"\[[\"']loc[\"']\]|\.errors\((include_\w+=\w+)?\)|\)\.splitlines\(\)\[1\]")
 
 
 def function_imports(package: str = "irsim") -> int:

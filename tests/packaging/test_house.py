@@ -18,7 +18,7 @@ from tests.packaging import house
         (house.process_limits, 1),
         (house.process_starts, 7),
         (house.problem_types, 5),
-        (house.translators, 5),
+        (house.translators, 1),
         (house.hashes, 1),
         (house.limited_reads, 1),
         (house.schema_versions, 1),

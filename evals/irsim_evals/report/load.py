@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
+from irsim.scenario.messages.translate import option_message, option_problems
 from irsim_evals.cases.store import all_case_ids, case_of, given_pictures
 from irsim_evals.results import Results, Trial, cases_hash, read_results
 from irsim_evals.statistics import Interval, wilson
@@ -78,7 +79,7 @@ def load_results(path: Path) -> Results:
     except (OSError, UnicodeDecodeError) as error:
         raise ArgumentError(f"{path} cannot be read: {error}", _ADVICE) from None
     except ValidationError as error:
-        raise ArgumentError(f"{path} is not a file of results: {_first(error)}", _ADVICE) from None
+        raise ArgumentError(f"{path} is not a file of results: {_first(error, Results)}", _ADVICE) from None
     if not results.trials:
         raise ArgumentError(f"{path} holds no trials", _ADVICE)
     return results
@@ -94,7 +95,7 @@ def load_proof(path: Path) -> Proof:
     try:
         return Proof.model_validate(read_json(path))
     except ValidationError as error:
-        raise ArgumentError(f"{path} is not the JSON of a proof: {_first(error)}", advice) from None
+        raise ArgumentError(f"{path} is not the JSON of a proof: {_first(error, Proof)}", advice) from None
     except ContentError as error:
         raise ArgumentError(f"{path} is not the JSON of a proof: {error}", advice) from None
 
@@ -130,11 +131,9 @@ def merge(parts: Sequence[tuple[Path, Results]]) -> Results:
     return first.model_copy(update={"trials": trials})
 
 
-def _first(error: ValidationError) -> str:
+def _first(error: ValidationError, model: type[BaseModel]) -> str:
     """The first problem in one line."""
-    problem = error.errors()[0]
-    where = ".".join(str(part) for part in problem["loc"])
-    return clean(f"{where}: {problem['msg']}" if where else problem["msg"], _MAX_MESSAGE)
+    return clean(option_message(option_problems(error, {}, model)[:1])[0], _MAX_MESSAGE)
 
 
 @dataclass(frozen=True)

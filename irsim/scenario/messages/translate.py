@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeAlias
 
 from pydantic import BaseModel, ValidationError
 
@@ -16,14 +16,21 @@ from irsim.scenario.messages.pydantic_errors import Explainer
 from irsim.scenario.model.scenario import Scenario
 from irsim.scenario.yaml.document import Document
 
-__all__ = ["located", "option_message", "option_problems", "translate"]
+__all__ = ["Special", "located", "option_message", "option_problems", "translate"]
 
+Special: TypeAlias = Callable[[Path], Diagnostic | None]
+"""Explains the errors at some places of a document in words of its own; None for all other places."""
 _OF_KEYS = ("unknown-key", "missing-key", "conflicting-keys", "duplicate-key")
 """Codes of problems of a key rather than of its value."""
 
 
 def translate(
-    failure: ValidationError, data: Any, document: Document, most: int, root: type[BaseModel] = Scenario
+    failure: ValidationError,
+    data: Any,
+    document: Document,
+    most: int,
+    root: type[BaseModel] = Scenario,
+    special: Special = lambda _: None,
 ) -> list[Finding]:
     """Findings for the errors of a validation, at most ``most`` of them.
 
@@ -33,9 +40,14 @@ def translate(
         document: The document of the data, to look up how values were written.
         most: Largest number of findings.
         root: Model of the whole document.
+        special: Explains values that may have several forms, for each of which pydantic lists an error.
     """
     findings: dict[tuple[str, Path], list[Finding]] = {}
     for item in failure.errors(include_url=False):
+        if (own := special(item["loc"])) is not None:
+            if len(findings) <= most:
+                findings["", own.path] = [Finding(own)]
+            continue
         path = _path(item["loc"])
         siblings = findings.setdefault((item["type"], _list_path(path)), [])
         if siblings and _list_path(path) != path:
