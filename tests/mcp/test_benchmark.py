@@ -147,7 +147,7 @@ async def test_limits(client: Caller, workspace: Path) -> None:
         (
             {"scenarios": [ROOM], "first_seed": 2**53 - 9},
             (
-                f"bad-argument: the seeds {2**53 - 9} to {2**53} exceed {2**53 - 1}, the largest that "
+                f"bad-argument: 10 seeds from {2**53 - 9} on exceed {2**53 - 1}, the largest that "
                 f"run_episode takes (first_seed). Fix: give at most {2**53 - 10}."
             ),
         ),

@@ -16,7 +16,8 @@ from tests.mcp.golden.write import FILE
 
 pytestmark = pytest.mark.one_python
 TOOLS = {tool["name"]: tool["inputSchema"]["properties"] for tool in json.loads(FILE.read_text(encoding="utf-8"))}
-VALUES = [*(value for value in EXTREMES if math.isfinite(value)), 2, 10**400, -(10**400), 1.5]
+VALUES = [*(value for value in EXTREMES if math.isfinite(value)), 2, 10**4300 - 1, -(10**4299), 1.5]
+"""The last integers have as many digits as Python reads: one more cannot be written."""
 MOST_TEXT = 24_500
 SCENE = {"scenario_path": "room.yaml"}
 NEEDED: dict[str, dict[str, Any]] = {
@@ -25,7 +26,7 @@ NEEDED: dict[str, dict[str, Any]] = {
     "render_snapshot": SCENE,
     "run_episode": {**SCENE, "max_steps": 3},
     "inspect_run": {"run_id": "last"},
-    "benchmark": {"scenarios": ["room.yaml"], "seeds": 1, "max_steps": 3},
+    "benchmark": {"scenarios": ["room.yaml", "other.yaml"], "seeds": 2, "max_steps": 3},
     "get_job": {"job_id": "last"},
 }
 
@@ -56,7 +57,8 @@ def calls() -> list[tuple[str, dict[str, Any]]]:
 
 async def check(workspace: Path, part: int, parts: int) -> None:
     """Make one of so many parts of the calls."""
-    (workspace / "room.yaml").write_text(ROOM)
+    for name in NEEDED["benchmark"]["scenarios"]:
+        (workspace / name).write_text(ROOM)
     async with connected(workspace) as client:
         assert not (await client.call_tool("run_episode", NEEDED["run_episode"])).is_error
         for name, arguments in calls()[part::parts]:
@@ -69,6 +71,16 @@ async def check(workspace: Path, part: int, parts: int) -> None:
 def test_every_number_of_every_tool_is_among_the_calls() -> None:
     assert {"lookup", "render_snapshot", "run_episode", "inspect_run", "benchmark"} <= {name for name, _ in calls()}
     assert len(calls()) > 300
+
+
+@pytest.mark.anyio
+@pytest.mark.parametrize("name", ["seeds", "first_seed"])
+@pytest.mark.parametrize("scenario", ["room.yaml", "navigation"])
+async def test_numbers_that_are_too_long_in_sum(workspace: Path, name: str, scenario: str) -> None:
+    (workspace / "room.yaml").write_text(ROOM)
+    arguments = {"scenarios": [scenario], "policies": ["dash", "rvo"], "seeds": 2, name: VALUES[-3]}
+    async with connected(workspace) as client:
+        assert (await client.error("benchmark", **arguments)).startswith(("bad-argument", "over-limit"))
 
 
 @pytest.mark.anyio

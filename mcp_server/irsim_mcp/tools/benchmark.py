@@ -189,17 +189,18 @@ def _check(scenarios: Sequence[str], policies: Sequence[str], seeds: int) -> Non
 
 def _check_last(first: int, seeds: int) -> None:
     if first + seeds - 1 > MAX_SEED:
-        what = f"the seeds {first} to {first + seeds - 1} exceed {MAX_SEED}, the largest that run_episode takes"
+        what = f"{seeds} seeds from {first} on exceed {MAX_SEED}, the largest that run_episode takes"
         raise failure("bad-argument", what, where="first_seed", fix=f"give at most {MAX_SEED - seeds + 1}")
 
 
 def _check_size(scenarios: int, policies: int, seeds: int) -> None:
     total = scenarios * policies * seeds
+    in_all = f"{total:,}" if total <= MAX_SEED else "far too many"  # a number of 4,300 digits cannot be written
     within = scenarios <= MAX_SCENARIOS and policies <= MAX_BEHAVIORS and seeds <= MAX_SEEDS
     if not within or total > MAX_EPISODES:
         raise failure(
             "over-limit",
-            f"{scenarios} scenarios x {policies} policies x {seeds} seeds = {total:,} episodes; at most "
+            f"{scenarios} scenarios x {policies} policies x {seeds} seeds = {in_all} episodes; at most "
             f"{MAX_SCENARIOS} x {MAX_BEHAVIORS} x {MAX_SEEDS}, and {MAX_EPISODES:,} in all",
             fix="ask for fewer seeds, or split them over several calls",
         )
