@@ -1,4 +1,4 @@
-"""Workspaces in unusual places: behind links, on other mounts, renamed in a call, with something in the records' place."""
+"""Workspaces in unusual places: behind links, on other mounts, renamed in a call, or with a pipe instead of records."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ async def test_a_link_that_is_given_is_followed_once(tmp_path: Path, above: bool
         (folder / "room.yaml").write_text(ROOM.replace("rover", folder.parent.name), encoding="utf-8")
     link = tmp_path / "link"
     link.symlink_to(real.parent if above else real)
-    async with Caller(build_server(link / "w" if above else link, writing=True), raise_exceptions=True) as client:
+    client = Caller(build_server(link / "w" if above else link, writing=True), raise_exceptions=True)
+    async with client:
         for _ in range(2):
             run = await client.data("run_episode", scenario_path="room.yaml", max_steps=2)
             assert [robot["name"] for robot in run["robots"]] == ["real"]
@@ -48,7 +49,8 @@ async def test_a_workspace_on_another_mount() -> None:
         pytest.skip("this machine has no second file system to write to")
     folder = Path(mkdtemp(dir="/dev/shm"))
     try:
-        async with Caller(build_server(folder, writing=True), raise_exceptions=True) as client:
+        client = Caller(build_server(folder, writing=True), raise_exceptions=True)
+        async with client:
             assert await client.data("write_scenario", path="rooms/a.yaml", yaml=ROOM)
             run = await client.data("run_episode", scenario_path="rooms/a.yaml", max_steps=2)
             for to in ("csv", "colmap", "colmap"):
