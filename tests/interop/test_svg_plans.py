@@ -12,6 +12,7 @@ from matplotlib.path import Path as Curve
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map
+from irsim.bridges.maps.source import ImportLimits
 from irsim.diagnostics.errors import ArgumentError
 
 pytestmark = pytest.mark.interop
@@ -102,6 +103,48 @@ def test_a_plan_that_ezdxf_draws_as_svg(tmp_path) -> None:
     (tmp_path / "a.svg").write_text(backend.get_string(page, settings=layout.Settings(fit_page=True)))
     unit = 6 / 1_000_000  # the longer side of its view box
     assert area(tmp_path / "a.svg", meters_per_unit=unit) == pytest.approx(9 + math.pi * 0.64, rel=0.01)
+
+
+def test_clip_paths_cut_off_what_one_does_not_see(tmp_path) -> None:
+    """Of shapes, groups and uses, each where it is placed; a clip path without shapes leaves nothing."""
+    plan = svgwrite.Drawing(str(tmp_path / "a.svg"), size=("20mm", "20mm"), viewBox="0 0 20 20")
+    left = plan.defs.add(plan.clipPath(id="left"))
+    left.add(plan.rect((0, 0), (2, 9)))
+    ring = plan.defs.add(plan.clipPath(id="ring", transform="translate(1 0)"))
+    ring.add(plan.path("M0 0 h4 v4 h-4 z M1 1 h2 v2 h-2 z", clip_rule="evenodd"))
+    plan.defs.add(plan.clipPath(id="nothing"))
+    plan.add(plan.rect((1, 1), (3, 1), clip_path="url(#left)"))  # 1 x 1
+    group = plan.add(plan.g(clip_path="url(#ring)", transform="translate(10 0)"))
+    group.add(plan.rect((0, 0), (9, 9)))  # 12
+    group.add(plan.rect((0, 0), (9, 1), clip_path="url('#left')", fill="none", stroke="black"))  # within the ring
+    part = plan.defs.add(plan.g(id="part"))
+    part.add(plan.rect((0, 0), (4, 1), style="clip-path: url(#left); fill: #333"))  # 2 each time
+    plan.add(plan.use(part, insert=(0, 10)))
+    plan.add(plan.use(part, insert=(10, 10), transform="scale(1 1.5)"))
+    cut = plan.add(plan.g(clip_path="url(#left)", transform="translate(0 14)"))
+    cut.add(plan.use(part, insert=(1, 0)))  # 1
+    plan.add(plan.rect((5, 5), (3, 3), clip_path="url(#nothing)"))
+    plan.add(plan.rect((5, 16), (2, 2), clip_path="url(#missing)"))  # 4, as in browsers
+    plan.save()
+    result = import_map(tmp_path / "a.svg", tmp_path / "a.yaml", meters_per_unit=1.0)
+    assert result.occupied * result.resolution**2 == pytest.approx(1 + 12 + 2 + 3 + 1 + 4, rel=0.01)
+    assert not result.notes
+
+
+def test_masks_and_clip_paths_in_other_units_are_said_with_their_share(tmp_path) -> None:
+    whole = '<clipPath id="c" clipPathUnits="objectBoundingBox"><rect width="1" height="0.5"/></clipPath>'
+    shapes = '<rect width="2" height="1" clip-path="url(#c)"/><g mask="url(#m)"><rect y="4" width="1" height="1"/></g>'
+    (tmp_path / "a.svg").write_text(HEAD + whole + shapes + '<rect x="5" y="5" width="1" height="1"/></svg>')
+    notes = import_map(tmp_path / "a.svg", tmp_path / "a.yaml", meters_per_unit=1.0).notes
+    assert "what masks and clip paths in other units cut off is part of the map: 2 areas, 75.0% of what" in notes[0]
+
+
+def test_plans_that_cross_too_often_are_refused_by_the_process_that_reads_them(tmp_path) -> None:
+    """Their areas would fill the memory of the caller."""
+    lines = "".join(f'<path d="M0 {k / 300} L9 {k / 300} M{k / 300} 0 v9"/>' for k in range(1, 1500))
+    (tmp_path / "a.svg").write_text(HEAD + f'<g fill="none" stroke="black" stroke-width="0.0001">{lines}</g></svg>')
+    with pytest.raises(BridgeError, match=r"its areas cross so often|longer than 5 s"):
+        import_map(tmp_path / "a.svg", tmp_path / "a.yaml", meters_per_unit=1.0, limits=ImportLimits(seconds=5))
 
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" viewBox="0 0 9 9">'

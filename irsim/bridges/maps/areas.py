@@ -1,4 +1,7 @@
-"""Areas from outlines that a drawing fills: by the rule of even and odd, or by how often they are gone around."""
+"""Areas from outlines that a drawing fills: by the rule of even and odd, or by how often they are gone around.
+
+The process that reads a plan unites its areas, within its limits of memory and time, and hands them over as bytes.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +10,42 @@ from typing import Any
 import numpy as np
 import shapely
 
+from irsim.bridges.maps.apart import Refused
+from irsim.bridges.maps.source import Outlined, Outlines
 from irsim.common.arrays import Floats
 
-__all__ = ["filled", "nested"]
+__all__ = ["filled", "nested", "packed", "unpacked"]
 
 _MOST_PAIRS = 50_000_000
 """Pairs of a face and a corner that are looked at."""
+
+_MOST_CORNERS = 5_000_000
+"""Corners of all areas, and of what they cover together."""
+
+
+def packed(things: list[Outlined]) -> tuple[Any, dict[str, Any]]:
+    """Areas, and the one that they cover together, as bytes, and what tells them apart as JSON.
+
+    Raises:
+        Refused: They cross so often that there are too many corners.
+    """
+    regions = [thing.region for thing in things]
+    regions.append(shapely.union_all(regions))
+    if shapely.get_num_coordinates(regions).sum() > _MOST_CORNERS:
+        what = f"its areas cross so often that they have more than {_MOST_CORNERS:,} corners"
+        raise Refused(what, "leave out layers that are not walls, such as hatches of lines")
+    texts = list(shapely.to_wkb(regions))
+    answer = {"sizes": [len(text) for text in texts], "names": [thing.name for thing in things]}
+    return np.frombuffer(b"".join(texts), dtype=np.uint8), answer
+
+
+def unpacked(data: Any, said: dict[str, Any]) -> Outlines:
+    """The outlines that :func:`packed` has made bytes of, with their unit and remarks."""
+    content, ends = data.tobytes(), np.cumsum(said["sizes"])
+    texts = [content[end - size : end] for size, end in zip(said["sizes"], ends, strict=True)]
+    *regions, solid = shapely.from_wkb(np.array(texts, dtype=object))
+    things = [Outlined(name, region) for name, region in zip(said["names"], regions, strict=True)]
+    return Outlines(things, solid=solid, meters_per_unit=float(said["unit"]), notes=list(said["notes"]))
 
 
 def nested(regions: list[Any]) -> Any:

@@ -57,7 +57,10 @@ def occupancy_of_outlines(outlines: Outlines, options: ImportOptions, limits: Im
         BridgeError: Nothing stands in the way, or there are too many cells for a resolution that was asked for.
     """
     things = outlines_within(outlines, options.bounds)
-    solid = shapely.union_all([thing.region for thing in things])
+    if outlines.solid is None:
+        solid = shapely.union_all([thing.region for thing in things])
+    else:
+        solid = outlines.solid if options.bounds is None else outlines.solid.intersection(shapely.box(*options.bounds))
     low, high = _extent(outlines, solid, options)
     side = fitting_side(options.resolution, low, high, limits.cells)
     if options.resolution is None and side == SIDES[0]:

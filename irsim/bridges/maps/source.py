@@ -212,6 +212,7 @@ class Outlines:
     Attributes:
         things: The things that stand in the way.
         frame: Convention of the axes of the file's world, see :mod:`irsim.bridges.frames`.
+        solid: The area that the things cover together, if the reader has united them.
         free: The area that is free by what the file says, such as roads; None for everything between the things.
         ground: Left, lower, right and upper bound of a ground that the map covers, too [m]; None for a margin around
             the things.
@@ -224,6 +225,7 @@ class Outlines:
 
     things: list[Outlined]
     frame: str = "irsim"
+    solid: Any = None
     free: Any = None
     ground: tuple[float, float, float, float] | None = None
     meters_per_unit: float = 1.0

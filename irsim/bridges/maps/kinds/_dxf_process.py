@@ -1,4 +1,4 @@
-"""The process that reads DXF with ezdxf: the lines of its model space, blocks and curves as lines, too."""
+"""The process that reads DXF with ezdxf: the areas of its model space, of lines, closed outlines and hatches."""
 
 from __future__ import annotations
 
@@ -10,9 +10,13 @@ import ezdxf
 import ezdxf.path
 import ezdxf.units
 import numpy as np
+import shapely
 from ezdxf.disassemble import recursive_decompose
 
 from irsim.bridges.maps.apart import Refused, serve
+from irsim.bridges.maps.areas import nested, packed
+from irsim.bridges.maps.geographic import WALL
+from irsim.bridges.maps.source import Outlined
 from irsim.common.arrays import Floats
 
 __all__ = ["load", "main"]
@@ -29,15 +33,16 @@ def main() -> None:
     serve(load)
 
 
-def load(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
-    """Points of all lines, and what is known of each line.
+def load(path: Path, request: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    """Outlines of what stands in the way, as :func:`~irsim.bridges.maps.areas.packed` makes them.
 
     Args:
         path: The file.
-        request: The request of the parent process.
+        request: The request of the parent process; ``unit`` is the length of a unit of the drawing [m] or None,
+            ``layers`` are the names of the layers that count, or None for all.
 
     Returns:
-        (K, 3) number of the line, x and y; and ``parts``, for each line its group, whether it is closed, and its width.
+        The outlines in meters, the length of a unit, and remarks.
     """
     document = ezdxf.readfile(path)
     notes = [] if document.units else ["the file names no unit: meters were taken, --meters-per-unit gives another one"]
@@ -65,7 +70,32 @@ def load(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
     if left:
         listed = ", ".join(f"{count} {kind}" for kind, count in left.most_common(5))
         notes.append(f"left out, since they are neither lines nor areas that are seen: {listed}")
-    return np.array(rows, dtype=np.float64).reshape(-1, 3), {"parts": parts, "unit": unit, "notes": notes}
+    unit = request["unit"] or unit
+    data, answer = packed(_things(np.array(rows, dtype=np.float64).reshape(-1, 3), parts, unit))
+    return data, answer | {"unit": unit, "notes": notes}
+
+
+def _things(points: Floats, parts: list[tuple[str, bool, float]], unit: float) -> list[Outlined]:
+    """Walls of lines, and the areas of closed outlines, of which one within another one of its layer is a hole.
+
+    Args:
+        points: (K, 3) number of the line, x and y.
+        parts: For each line its group, whether it is closed, and its width.
+        unit: Length of a unit [m].
+    """
+    if not np.isfinite(points).all():
+        raise Refused("it has coordinates that are not finite")
+    lines = np.split(points[:, 1:] * unit, np.searchsorted(points[:, 0], range(1, len(parts))))
+    groups: dict[str, list[Any]] = {}
+    things: list[Outlined] = []
+    for line, (group, closed, width) in zip(lines, parts, strict=True) if parts else ():
+        if closed and len(line) >= 4:
+            groups.setdefault(group, []).append(shapely.make_valid(shapely.Polygon(line)))
+        elif len(line) >= 2:
+            thick = width * unit if width > 0 else WALL
+            wall = shapely.LineString(line).buffer(thick / 2, cap_style="flat", join_style="mitre")
+            things.append(Outlined("", wall))
+    return things + [Outlined("", nested(regions)) for regions in groups.values()]
 
 
 def _chosen(document: Any, layers: list[str] | None) -> set[str] | None:

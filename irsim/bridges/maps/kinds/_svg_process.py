@@ -1,4 +1,4 @@
-"""The process that reads SVG with svgelements: the outlines of what it paints, in the order in which it paints them.
+"""The process that reads SVG with svgelements: the areas of what it paints, in the order in which it paints them.
 
 svgelements gets only elements that draw: text, pictures, scripts and references to other files are taken away before.
 """
@@ -8,15 +8,20 @@ from __future__ import annotations
 import io
 import math
 import xml.etree.ElementTree as ET
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
 from svgelements import SVG, Close, Color, Line, Move, Shape
 from svgelements import Path as Curve
 
 from irsim.bridges.maps.apart import Refused, serve
-from irsim.bridges.maps.kinds._svg_tree import Cleaned, cleaned
+from irsim.bridges.maps.areas import packed
+from irsim.bridges.maps.kinds._svg_areas import Clips, painted_region, visible
+from irsim.bridges.maps.kinds._svg_clips import CLIP, CLIPPED, UNREAD
+from irsim.bridges.maps.kinds._svg_tree import cleaned
 from irsim.bridges.maps.source import ImportLimits
 from irsim.bridges.maps.xml_files import read_xml
 from irsim.common.arrays import Floats
@@ -37,6 +42,8 @@ _WHITE = 0.9
 _FAINT = 0.1
 """Opacity below which paint is not seen."""
 _AGAIN = "write the file again with the program that made it"
+_FARTHEST = 1e9
+"""Largest coordinate [m]."""
 _SMALL = 2.0
 """Size below which a drawing is on a scale rather than as large as the place [m]."""
 
@@ -46,8 +53,8 @@ def main() -> None:
     serve(load)
 
 
-def load(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
-    """Points of all outlines, and what is known of each outline.
+def load(path: Path, request: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    """Outlines of what stands in the way, as :func:`~irsim.bridges.maps.areas.packed` makes them.
 
     Args:
         path: The file.
@@ -55,9 +62,8 @@ def load(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
             ``layers`` are the names of the layers that count, or None for all.
 
     Returns:
-        (K, 3) number of the outline, x and y, in meters and y up; and ``parts``, for each outline the number of the
-        paint that it belongs to; ``paints``, for each paint its name, whether it is dark, how it is filled or how wide
-        its line is; and the length of a unit.
+        The outlines in meters, y up, without what white paint covers or clip paths cut off; the length of a unit, and
+        remarks.
     """
     tree = cleaned(path, read_xml(path, ImportLimits(bytes=request["bytes"]), doctypes=True), request["layers"])
     root, notes = tree.root, list(tree.notes)
@@ -72,47 +78,89 @@ def load(path: Path, request: dict[str, Any]) -> tuple[Floats, dict[str, Any]]:
     if not scaled:
         unit = _PIXEL
         notes += _unit_notes(root, size, drawing)
-    rows, parts, paints, light = _painted(drawing, tree, unit)
+    regions, paints = _painted(drawing, _Scale(unit, 0.0 if size is None else size[1]))
+    light = sum(not paint.dark for paint in paints)
     if light:
-        notes.append(f"{plural(light, 'area')} in white or nearly white count as free ground")
-    points = np.array(rows, dtype=np.float64).reshape(-1, 3)
-    points[:, 2] = (0.0 if size is None else size[1]) - points[:, 2]
-    points[:, 1:] *= unit
-    return points, {"parts": parts, "paints": paints, "unit": unit * _pixels_per_unit(drawing, size), "notes": notes}
+        notes.append(f"{light} area{'s' * (light != 1)} in white or nearly white count as free ground")
+    notes += _unread(regions, paints)
+    things = visible(regions, np.array([paint.dark for paint in paints], bool), [paint.name for paint in paints])
+    if not things:
+        raise Refused("nothing in it is painted darker than white", "check its layers, colors and hidden parts")
+    data, answer = packed(things)
+    return data, answer | {"unit": unit * _pixels_per_unit(drawing, size), "notes": notes}
 
 
-def _painted(drawing: Any, tree: Cleaned, unit: float) -> tuple[list[Any], list[int], list[Any], int]:
-    """Points of outlines in pixels, y down; the paint of each outline; all paints; and how many are light."""
-    rows: list[tuple[float, float, float]] = []
-    parts: list[int] = []
-    paints: list[tuple[str, bool, str, float, str, str]] = []
-    light = 0
+@dataclass(frozen=True)
+class _Scale:
+    """From pixels to meters: the length of a pixel [m], and the height of the drawing [pixels]."""
+
+    unit: float
+    height: float
+
+    def meters(self, line: list[tuple[float, float]]) -> Floats:
+        points = np.array(line, dtype=np.float64)
+        points[:, 1] = self.height - points[:, 1]
+        points *= self.unit
+        if not (np.abs(points) <= _FARTHEST).all():
+            raise Refused("it has coordinates beyond a million kilometers", "give --meters-per-unit")
+        return points
+
+
+@dataclass(frozen=True)
+class _Paint:
+    name: str
+    dark: bool
+    unread: bool
+
+
+def _painted(drawing: Any, scale: _Scale) -> tuple[list[Any], list[_Paint]]:
+    """The areas that are painted, in their order, and what is known of each."""
+    regions: list[Any] = []
+    paints: list[_Paint] = []
+    clips = Clips()
+    total = 0
     for shape in drawing.elements(lambda element: isinstance(element, Shape)):
         values = shape.values
         if values.get("display") == "none" or values.get("visibility") in ("hidden", "collapse"):
             continue
+        if CLIP in values:
+            lines = [scale.meters(line) for line in _lines(shape, scale.unit) if len(line) >= 3]
+            if lines:
+                clips.add(values[CLIP], painted_region(lines, str(values.get("clip-rule", "nonzero"))))
+            continue
         if _share(values.get("opacity")) < _FAINT:
             continue
         name = str(values.get("label") or values.get("id") or "")[:80]
-        lines = None
+        numbers = [key.removeprefix(CLIPPED) for key in values if str(key).startswith(CLIPPED)]
+        points = None
         for what in ("fill", "stroke"):
             width = float(shape.implicit_stroke_width or 0.0) if what == "stroke" else 0.0
             dark = _is_dark(str(values.get(what, "none")), _share(values.get(f"{what}-opacity")))
-            if dark is None or (what == "stroke" and not 0 < width * unit < 1e6):
+            if dark is None or (what == "stroke" and not 0 < width * scale.unit < 1e6):
                 continue
-            lines = _lines(shape, unit) if lines is None else lines
-            kept = [one for one in lines if len(one) >= (3 if what == "fill" else 2)]
+            points = _lines(shape, scale.unit) if points is None else points
+            kept = [scale.meters(line) for line in points if len(line) >= (3 if what == "fill" else 2)]
             if not kept:
                 continue
+            total += sum(map(len, kept))
+            _check_number(total)
             rule = str(values.get("fill-rule", "nonzero")) if what == "fill" else "line"
             cap, join = str(values.get("stroke-linecap", "butt")), str(values.get("stroke-linejoin", "miter"))
-            paints.append((name, dark, rule, width * unit, cap, join))
-            light += not dark
-            for one in kept:
-                rows += [(float(len(parts)), x, y) for x, y in one]
-                parts.append(len(paints) - 1)
-            _check_number(len(rows))
-    return rows, parts, paints, light
+            region = painted_region(kept, rule, width * scale.unit, cap, join)
+            regions.append(clips.cut(numbers, region) if numbers else region)
+            paints.append(_Paint(name, dark, UNREAD in values))
+    return regions, paints
+
+
+def _unread(regions: list[Any], paints: list[_Paint]) -> list[str]:
+    """A remark on the share of paint that has a clip path or a mask which is not read."""
+    areas = shapely.area(np.array(regions, dtype=object))
+    wrong = np.array([paint.unread for paint in paints], bool)
+    if not wrong.any():
+        return []
+    share = areas[wrong].sum() / max(areas.sum(), 1e-12)
+    what = "what masks and clip paths in other units cut off is part of the map"
+    return [f"{what}: {plural(int(wrong.sum()), 'area')}, {share:.1%} of what is painted"]
 
 
 def _check_number(points: int) -> None:

@@ -7,8 +7,9 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
+from irsim.bridges.maps.kinds._svg_clips import MARKS, insert_clips
 from irsim.bridges.maps.source import unusable
-from irsim.common.text import clean, plural
+from irsim.common.text import clean
 
 __all__ = ["Cleaned", "cleaned"]
 
@@ -48,15 +49,18 @@ def cleaned(path: Path, root: ET.Element, layers: list[str] | None) -> Cleaned:
     left: Counter[str] = Counter()
     if layers is not None:
         _check_layers(path, root, layers)
+    for item in root.iter():
+        for key in [key for key in item.attrib if key.startswith(MARKS)]:
+            del item.attrib[key]
+    clips = {item.get("id", ""): item for item in root.iter("clipPath")}
+    for clip in clips.values():
+        _prune(path, clip, Counter(), None, chosen=True)
     _prune(path, root, left, None if layers is None else set(layers), chosen=layers is None)
     _check_uses(path, root)
-    clipped = sum("clip-path" in item.attrib or "clip-path" in item.get("style", "") for item in root.iter())
-    notes = []
-    if left:
-        listed = ", ".join(f"{count} {what}" for what, count in left.most_common(6))
-        notes.append(f"left out: {listed}")
-    if clipped:
-        notes.append(f"what clip paths cut off is part of the map: {plural(clipped, 'element')}")
+    listed = ", ".join(f"{count} {what}" for what, count in left.most_common(6))
+    notes = [f"left out: {listed}"] if left else []
+    notes += insert_clips(path, root, clips)
+    _check_uses(path, root)
     return Cleaned(root, notes)
 
 
