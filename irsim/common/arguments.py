@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from operator import index
-from typing import Any
+from typing import Any, TypeGuard
 
 from irsim.common.text import clean
 from irsim.diagnostics.errors import InputError
 
-__all__ = ["as_given", "check_positive", "check_whole_number", "is_whole_number"]
+__all__ = ["as_given", "check_positive", "check_whole_number", "is_number", "is_whole_number"]
+
+
+def is_number(value: Any) -> TypeGuard[int | float]:
+    """Whether a value is a number of Python; True and False do not count."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def is_whole_number(value: Any) -> bool:

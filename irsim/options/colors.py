@@ -9,6 +9,7 @@ from pydantic import GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
+from irsim.common.arguments import is_number
 from irsim.diagnostics.diagnostic import nearest
 from irsim.options.base import problem, shared_schema
 
@@ -71,7 +72,7 @@ def _validate(value: Any) -> str | tuple[float, ...]:
     if isinstance(value, str):
         return _text(value)
     if isinstance(value, (list, tuple)) and len(value) in (3, 4):
-        numbers = [v for v in value if isinstance(v, (int, float)) and not isinstance(v, bool) and 0 <= v <= 1]
+        numbers = [v for v in value if is_number(v) and 0 <= v <= 1]
         if len(numbers) == len(value):
             return tuple(float(v) for v in numbers)
     raise problem("unknown-color", "this is not a color", allowed=_EXPECTED)

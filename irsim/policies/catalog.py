@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from irsim.common.arguments import as_given
+from irsim.common.arguments import as_given, is_number
 from irsim.common.hashing import digest
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest, suggestion
@@ -271,10 +271,6 @@ def _digest(path: Path) -> str:
     return digest(path.read_bytes(), *beside)
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
 def _from_file(
     text: str, name: str, options: Mapping[str, Any], folder: str | Path | None, root: str | Path | None
 ) -> Policy:
@@ -301,7 +297,7 @@ def _network(path: Path, text: str, name: str, options: Mapping[str, Any]) -> Po
 
     period = options.get("decision_dt")
     unknown = [key for key in options if key != "decision_dt"]
-    if unknown or (period is not None and not (_is_number(period) and 0 < period < math.inf)):
+    if unknown or (period is not None and not (is_number(period) and 0 < period < math.inf)):
         what = f"decision_dt must be a time [s] above 0, got {as_given(period)}"
         what = f"{clean(unknown[0])!r} is not an option of a file" if unknown else what
         fix = "the only option is decision_dt" if unknown else "write a number of seconds such as 0.25"

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from irsim.common.arguments import as_given
+from irsim.common.arguments import as_given, is_number
 from irsim.diagnostics.diagnostic import nearest
 from irsim.diagnostics.errors import PolicyError
 from irsim.policies.observe import Beams, beams_of
@@ -38,7 +38,7 @@ def check_declaration(policy: Policy) -> None:
     if not isinstance(policy.needs, Needs):
         what = f"needs of policy {name!r} must be irsim.policies.Needs, got {as_given(policy.needs)}"
         raise PolicyError("policy-failed", what, "write needs = Needs(neighbors=5)")
-    number = isinstance(period, (int, float)) and not isinstance(period, bool)
+    number = is_number(period)
     if period is not None and not (number and 0 < period < math.inf):
         what = f"decision_dt of policy {name!r} must be a time [s] above 0, got {as_given(period)}"
         raise PolicyError("policy-failed", what, "give a time such as 0.2, or None to decide in every step")

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from irsim.common.arguments import as_given
+from irsim.common.arguments import as_given, is_number
 from irsim.common.arrays import Floats
 from irsim.common.records import ContentError
 from irsim.common.yaml.plain import read_plain_yaml
@@ -69,7 +69,7 @@ class NeuPanPolicy(Policy):
     def __init__(self, config: str, velocities: bool = False, speed: float | None = None) -> None:
         if not isinstance(velocities, bool):
             raise ArgumentError(f"velocities must be true or false, got {as_given(velocities)}", "write true")
-        if speed is not None and not _is_speed(speed):
+        if speed is not None and not (is_number(speed) and 0 < speed < math.inf):
             raise ArgumentError(f"speed must be above 0 m/s, got {as_given(speed)}", "write 1")
         self._config = _read(config)
         self._folder = Path(config).resolve().parent
@@ -261,10 +261,6 @@ def _waypoints(config: dict[str, Any], file: str) -> list[Floats] | None:
         what = f"{file!r}: ipath: waypoints is a list of poses [x, y, heading], got {as_given(given)}"
         raise PolicyError("policy-failed", what, "write waypoints: [[0, 20, 0], [60, 20, 0]]")
     return list(poses)
-
-
-def _is_speed(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0 < value < math.inf
 
 
 def _corners(robot: dict[str, Any]) -> Floats | None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from irsim.common.arguments import as_given, is_whole_number
+from irsim.common.arguments import as_given, is_number, is_whole_number
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError
 
@@ -63,7 +63,7 @@ class Needs:
                 raise ArgumentError(what, "give a number such as 5")
         for name in ("neighbor_range", "map_resolution"):
             value = getattr(self, name)
-            if not (isinstance(value, (int, float)) and not isinstance(value, bool) and value > 0):  # also refuses NaN
+            if not (is_number(value) and value > 0):  # also refuses NaN
                 raise ArgumentError(f"{name} must be a distance [m] above 0, got {as_given(value)}", "give metres")
 
 

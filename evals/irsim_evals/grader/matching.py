@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from irsim.common.angles import wrap
+from irsim.common.arguments import is_number
 
 __all__ = ["TOLERANCES", "UNITS", "Counted", "Kind", "Match", "Quantity", "Seeds", "matches", "quantity", "show"]
 
@@ -182,7 +183,7 @@ def show(value: Any) -> str:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and not math.isnan(value)
+    return is_number(value) and not math.isnan(value)
 
 
 def _same(value: Any, wanted: Any, kind: Kind, tol: float | None) -> bool:

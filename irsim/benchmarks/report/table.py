@@ -21,6 +21,7 @@ from typing import Any, Literal, NamedTuple
 
 from irsim.benchmarks.report.rows import policy_labels
 from irsim.benchmarks.summary import KEYS
+from irsim.common.arguments import is_number
 from irsim.common.files import replace_bytes
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.results.benchmark import BenchmarkResult, SuiteResult
@@ -144,7 +145,7 @@ def _kind(values: Sequence[Any]) -> Kind:
     """Kind of a column of values of a suite; what fits nothing else is text."""
     if all(isinstance(value, bool) for value in values):
         return "flag"
-    if any(isinstance(value, bool) or not isinstance(value, (int, float)) for value in values):
+    if not all(map(is_number, values)):
         return "text"
     return "integer" if all(isinstance(value, int) and abs(value) < 2**63 for value in values) else "number"
 

@@ -22,6 +22,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from irsim.common import data_files as resources
+from irsim.common.arguments import is_number
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import CodedError
 from irsim.options.units import Value
@@ -94,7 +95,7 @@ class Parameter(_Metadata):
         converted = self._convert(value)
         if converted is None:
             raise TemplateError("bad-parameter", f"{name} cannot be {value!r}.", f"give {self.allowed()}.")
-        if isinstance(converted, (int, float)) and not isinstance(converted, bool):
+        if is_number(converted):
             low, high = -math.inf if self.min is None else self.min, math.inf if self.max is None else self.max
             if not low <= converted <= high:
                 raise TemplateError(

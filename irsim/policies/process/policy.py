@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from irsim.common.arguments import as_given
+from irsim.common.arguments import as_given, is_number
 from irsim.common.arrays import Floats
 from irsim.common.text import plural
 from irsim.diagnostics.errors import ArgumentError, PolicyLostError
@@ -57,7 +57,7 @@ class ProcessPolicy(Policy):
         if address is not None and not _is_text(address):
             raise ArgumentError(f"address must be a text, got {as_given(address)}", "write 127.0.0.1:9000")
         for key, value in (("timeout", timeout), ("start_timeout", start_timeout)):
-            if not _is_time(value):
+            if not (is_number(value) and 0 < value <= 3600):
                 raise ArgumentError(f"{key} must be a time from 0 to 3600 s, got {as_given(value)}", "write 5")
         self.name = "process"
         self._command, self._address = command, address
@@ -145,7 +145,3 @@ def _is_text(value: Any) -> bool:
 
 def _is_command(value: Any) -> bool:
     return isinstance(value, (list, tuple)) and bool(value) and all(map(_is_text, value))
-
-
-def _is_time(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0 < value <= 3600

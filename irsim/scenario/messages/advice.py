@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from irsim.common.arguments import is_number
 from irsim.diagnostics.diagnostic import Path
 from irsim.options.vectors import is_vector
 from irsim.scenario.messages.findings import key_path
@@ -73,8 +74,8 @@ def _pose(key: str, value: Any, parent: Mapping[Any, Any]) -> str:
     written: Any = next((parent[name] for name in ("state", "pose", "position", "start") if name in parent), None)
     if is_vector(written):
         known.update(zip(known, written, strict=False))
-    known.update({name: parent[name] for name in ("x", "y") if _is_number(parent.get(name))})
-    if key in _HEADINGS and _is_number(value):
+    known.update({name: parent[name] for name in ("x", "y") if is_number(parent.get(name))})
+    if key in _HEADINGS and is_number(value):
         known["theta"] = round(math.radians(value), 4) if abs(value) > 2 * math.pi else value
     return f"state: {flow(list(known.values()))}"
 
@@ -101,15 +102,11 @@ def _sides(value: Any, first: str, second: str) -> str:
 
 
 def _half(value: Any) -> str:
-    return flow(value / 2) if _is_number(value) else "..."
+    return flow(value / 2) if is_number(value) else "..."
 
 
 def _text(value: Any) -> str:
-    return flow(value) if _is_number(value) else "..."
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
+    return flow(value) if is_number(value) else "..."
 
 
 _HEADING_STEP = math.pi / 4

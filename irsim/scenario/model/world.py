@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema
 
+from irsim.common.arguments import is_number
 from irsim.options.base import Options, problem
 from irsim.options.colors import Color
 from irsim.options.registry import MAPS
@@ -39,14 +40,14 @@ _VIEWPOINT = {
 }
 
 
-def _is_finite(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= MAX_METERS
-
-
 def _viewpoint(value: Any) -> list[float] | str | None:
     if value is None or isinstance(value, str):
         return value
-    if isinstance(value, (list, tuple)) and len(value) == 2 and all(_is_finite(v) for v in value):
+    if (
+        isinstance(value, (list, tuple))
+        and len(value) == 2
+        and all(is_number(v) and abs(v) <= MAX_METERS for v in value)
+    ):
         return [float(v) for v in value]
     raise problem(
         "wrong-type", "a viewpoint must be [x, y] or the name of an object", allowed="[x, y] in metres, or a name"

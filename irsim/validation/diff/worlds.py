@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from irsim.common.arguments import is_number
 from irsim.env import Env
 from irsim.results.validation import KeyChange, WorldChange
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -145,7 +146,7 @@ def _numbers(value: Any) -> Iterator[float]:
     if isinstance(value, list):
         for item in value:
             yield from _numbers(item)
-    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+    elif is_number(value):
         yield float(value)
 
 
