@@ -43,16 +43,13 @@ def _contacts(scenario: ResolvedScenario) -> str:
 
 
 def _limits(scenario: ResolvedScenario) -> str:
-    limited = [_is_limited(record) for record in scenario.objects if record.role == "robot" and not record.static]
+    moving = [record for record in scenario.objects if record.role == "robot" and not record.static]
+    limited = [any(map(math.isfinite, record.acce)) for record in moving]
     if all(limited):
         return "accelerations are limited"
     if any(limited):
         return "accelerations of some robots are limited"
     return "robots change their speed at once (no acce)"
-
-
-def _is_limited(record: ObjectRecord) -> bool:
-    return any(math.isfinite(limit) for limit in record.acce)
 
 
 _EQUAL_SHARE = 0.01

@@ -97,7 +97,7 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
         self.active = active
         self._length += active
         self._return += reward
-        infos = _blank(active)
+        infos: list[dict[str, Any]] = [{"active": flag} for flag in active.tolist()]
         for slot in np.flatnonzero(terminated | truncated).tolist():
             episode = {"r": float(self._return[slot]), "l": int(self._length[slot])}
             success = bool(result.arrived.reshape(-1)[slot])
@@ -139,7 +139,3 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
         """Slots are never wrapped one by one."""
         return [False] * len(list(self._get_indices(indices)))
-
-
-def _blank(active: NDArray[np.bool_]) -> list[dict[str, Any]]:
-    return [{"active": flag} for flag in active.tolist()]

@@ -108,7 +108,7 @@ def task_answer(words: Sequence[str]) -> Answer | None:
     named = components(schema, node)
     chosen = bool(words) and component_name(node) == words[-1] if "properties" in node else False
     if len(named) > 1 and not chosen:
-        groups = {"one of": [_line(name, option) for name, option in named.items()]}
+        groups = {"one of": [Key(name=name, text=_text(option)) for name, option in named.items()]}
     else:
         groups = {"keys": _keys(schema, node)}
     about = None if not words or chosen else key(schema, words[-1], node)
@@ -148,10 +148,6 @@ def _keys(schema: Node, node: Node) -> list[Key]:
         for name, child in option["properties"].items():
             keys.setdefault(name, key(schema, name, child, name in required))
     return list(keys.values())
-
-
-def _line(name: str, option: Node) -> Key:
-    return Key(name=name, text=_text(option))
 
 
 def _text(node: Node) -> str:

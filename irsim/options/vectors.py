@@ -75,12 +75,10 @@ def _holds_list(value: Any) -> bool:
 
 def _tag_vectors(value: Any) -> str:
     """Tag for keys that take a vector: text among the numbers is a wrong number, not the value of one object."""
-    per_object = isinstance(value, (list, tuple)) and any(_separate(item) for item in value)
+    per_object = isinstance(value, (list, tuple)) and any(
+        item is None or isinstance(item, (list, tuple)) for item in value
+    )
     return PER_OBJECT if per_object else ONE
-
-
-def _separate(item: Any) -> bool:
-    return item is None or isinstance(item, (list, tuple))
 
 
 _DISCRIMINATORS = {

@@ -110,7 +110,8 @@ class PolicyDriver:
         self._robots = np.array(robots, dtype=np.int64)
         self._groups = self._grouped(simulation, robots)
         self._observer = Observer(simulation, self.policy.needs, self._robots)
-        self._python = np.array([index in _python_drives(simulation) for index in robots], dtype=bool)
+        in_python = [] if simulation.drives is None else simulation.drives.objects
+        self._python = np.array([index in in_python for index in robots], dtype=bool)
         before, self._ids = self._ids, [records[index].id for index in robots]
         old = [before.index(number) if number in before else -1 for number in self._ids]
         columns = max([group.columns for group in self._groups], default=0)
@@ -290,10 +291,6 @@ class PolicyDriver:
             message = f"policy {self.policy.name!r} returned {numbers} for {name!r}{where}, which is not finite"
             raise PolicyError("policy-failed", message, advice)
         return values
-
-
-def _python_drives(simulation: Simulation) -> list[int]:
-    return [] if simulation.drives is None else simulation.drives.objects
 
 
 def claim_worlds(policy: Policy, count: int, driver: PolicyDriver) -> int:

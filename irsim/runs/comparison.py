@@ -147,14 +147,12 @@ def _setup(first: Run, second: Run) -> list[SetupChange]:
         before, after = first.meta.get(key), second.meta.get(key)
         if before != after:
             changes.append(SetupChange(key=key, before=before, after=after))
-    lone = [[name for name in run.names if name not in other.names] for run, other in _both_ways(first, second)]
+    lone = [
+        [name for name in run.names if name not in other.names] for run, other in ((first, second), (second, first))
+    ]
     if any(lone):
         changes.append(SetupChange(key="objects", before=lone[0], after=lone[1]))
     return changes
-
-
-def _both_ways(first: Run, second: Run) -> list[tuple[Run, Run]]:
-    return [(first, second), (second, first)]
 
 
 def _first_difference(first: Run, second: Run, tolerance: float) -> tuple[int | None, list[Parting], int]:

@@ -45,7 +45,7 @@ def check_units(feature: Feature) -> None:
     missing = [
         name
         for name, field in schema.get("properties", {}).items()
-        if not any(word in name for word in _UNITLESS_NAMES) and _has_number(field) and "x-unit" not in str(field)
+        if not any(word in name for word in _UNITLESS_NAMES) and "'number'" in str(field) and "x-unit" not in str(field)
     ]
     assert not missing, f"{feature.name}: numbers without a unit: {missing}"
 
@@ -180,7 +180,3 @@ def simulated_drives() -> list[str]:
 def _moved(x: float, y: float, turn: float, shift: tuple[float, float]) -> tuple[float, float]:
     c, s = float(np.cos(turn)), float(np.sin(turn))
     return c * x - s * y + shift[0], s * x + c * y + shift[1]
-
-
-def _has_number(field: dict[str, Any]) -> bool:
-    return "'number'" in str(field)

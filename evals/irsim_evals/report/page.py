@@ -10,7 +10,6 @@ from pathlib import Path
 
 from irsim.common.pages import one_page
 from irsim_evals.report.case_section import case_sections
-from irsim_evals.report.comparison import Comparison
 from irsim_evals.report.content import Content
 from irsim_evals.report.html_text import UNITS, escaped, number, percent
 from irsim_evals.report.load import Proof
@@ -72,7 +71,12 @@ def sections(content: Content) -> str:
     if any(arm.cost.known for arm in content.arms):
         parts.append(_section("Cost", _cost(content.arms)))
     if content.comparisons:
-        parts.append(_section("One arm against the next", _comparisons(content.comparisons)))
+        parts.append(
+            _section(
+                "One arm against the next",
+                "".join(f"<p>{escaped(one.sentence, 600)}</p>" for one in content.comparisons),
+            )
+        )
     if content.proof is not None:
         parts.append(_section("Can the grader be believed?", _proof(content.proof)))
     return "\n".join(parts)
@@ -151,10 +155,6 @@ def _cost(arms: Sequence[ArmSummary]) -> str:
     return _plain(heads, rows) + _note(
         "The cost of all these answers, failed ones included, divided by the answers that pass."
     )
-
-
-def _comparisons(comparisons: Iterable[Comparison]) -> str:
-    return "".join(f"<p>{escaped(one.sentence, 600)}</p>" for one in comparisons)
 
 
 def _proof(proof: Proof) -> str:

@@ -35,16 +35,15 @@ def outlines_within(outlines: Outlines, bounds: tuple[float, float, float, float
     things = outlines.things
     if bounds is not None:
         box = shapely.box(*bounds)
-        inside = [thing if box.contains(thing.region) else _cut_off(thing, box) for thing in things]
+        inside = [
+            thing if box.contains(thing.region) else Outlined(thing.name, thing.region.intersection(box))
+            for thing in things
+        ]
         things = [thing for thing in inside if thing.region.area > 0]
     if not things and outlines.free is None:
         where = "within the bounds" if bounds is not None else "between --climb and --headroom above the floor"
         raise BridgeError("bridge-file", f"the scene is not usable: nothing stands {where}", "check them, and --height")
     return things
-
-
-def _cut_off(thing: Outlined, box: Any) -> Outlined:
-    return Outlined(thing.name, thing.region.intersection(box))
 
 
 def occupancy_of_outlines(outlines: Outlines, options: ImportOptions, limits: ImportLimits) -> Occupancy:

@@ -13,7 +13,6 @@ from irsim.objects.view import ObjectView
 from irsim.scenario.model.scenario import Scenario, WorldModel
 from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.expand import resolve
-from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.single_object import read_object
 from irsim.simulation.active_env import last_used
 from irsim.simulation.simulation import Simulation
@@ -86,7 +85,7 @@ class ObjectBase(ScriptObject, metaclass=_AnyObject):
             keys[name] = value
         env = last_used()
         given = dict(shape=shape, kinematics=kinematics, state=state, velocity=velocity, goal=goal, color=color, **keys)
-        scenario = _empty() if env is None else env.simulation.scenario
+        scenario = resolve(Scenario(world=WorldModel())) if env is None else env.simulation.scenario
         number = 0 if env is None else next(env.env_param.id_iter)
         record, findings = read_object(role, given, scenario.world, number)
         for item in findings:
@@ -97,10 +96,6 @@ class ObjectBase(ScriptObject, metaclass=_AnyObject):
         set_views(simulation, [self])
         if env is not None:
             self._made_beside = env._objects
-
-
-def _empty(**keys: Any) -> ResolvedScenario:
-    return resolve(Scenario(world=WorldModel(**keys)))
 
 
 class World(WorldView):

@@ -151,7 +151,7 @@ def geometry_path(geometry: Geometry) -> Path:
     if isinstance(geometry, Line):
         return Path(geometry.points)
     if isinstance(geometry, Sector):
-        return _sector(geometry)
+        return _scale_and_move(Path.wedge(math.degrees(geometry.start), math.degrees(geometry.end)), geometry)
     if len(geometry.rings) == 1:
         return _ring(geometry.rings[0])
     return Path.make_compound_path(*[_ring(ring) for ring in geometry.rings])
@@ -162,10 +162,6 @@ def _ring(points: Floats) -> Path:
     codes = np.full(len(closed), Path.LINETO, dtype=Path.code_type)
     codes[0], codes[-1] = Path.MOVETO, Path.CLOSEPOLY
     return Path(closed, codes)
-
-
-def _sector(sector: Sector) -> Path:
-    return _scale_and_move(Path.wedge(math.degrees(sector.start), math.degrees(sector.end)), sector)
 
 
 def _scale_and_move(unit: Path, target: Circle | Sector) -> Path:

@@ -88,7 +88,7 @@ def open_scene(task: Task, folder: Path) -> TaskScene:
             _check_alike(base, variant, (*_where(task, level), "parameters" if drawn else "values"))
             variants.append(variant)
             for name in names:
-                table[name].append(changed[name] if name in changed else _default(task, name))
+                table[name].append(changed[name] if name in changed else _template(task).parameters[name].default)
     if all(count == 1 for count in counts) and all(_is_plain(task, level) for level in range(len(draws))):
         variants, counts, table = [], [0] * len(draws), {}
     firsts = np.cumsum([0, *counts[:-1]]).tolist()
@@ -131,10 +131,6 @@ def _values_of(task: Task, level: int, draw: LevelDraws) -> list[dict[str, Value
             raise task_error(path, "a number is drawn from a range", "write [low, high]")
         columns[name] = drawn_values(name, values, parameter.type, draw.variants)
     return [{name: column[k] for name, column in columns.items()} for k in range(draw.variants)]
-
-
-def _default(task: Task, name: str) -> Value:
-    return _template(task).parameters[name].default
 
 
 def _template(task: Task) -> Template:

@@ -309,11 +309,8 @@ def _is_decided_by_core(record: ObjectRecord, grouped: dict[int, BehaviorOptions
         return True
     name = str(getattr(record.behavior, "name", ""))
     feature = BEHAVIORS.get(name) if record.behavior is not None else None
-    return feature is not None and feature.kernel is not None and not _has_own(record, name)
-
-
-def _has_own(record: ObjectRecord, name: str) -> bool:
-    return CUSTOM_BEHAVIORS.has(getattr(record.kinematics, "name", None), name)
+    own = CUSTOM_BEHAVIORS.has(getattr(record.kinematics, "name", None), name)
+    return feature is not None and feature.kernel is not None and not own
 
 
 def attach_python_drives(simulation: Simulation, *, anew: bool = False) -> None:

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, Path, suggestion
 from irsim.options.registry import KINEMATICS
-from irsim.policies.networks.document import OutputOptions, PolicyDocument, PolicyHead
+from irsim.policies.networks.document import PolicyDocument, PolicyHead
 from irsim.policies.networks.errors import LIMITS, Limits, PolicyFileError, flaw
 from irsim.policies.networks.layers._options import LAYERS, LayerOptions, Plan, ShapeError
 from irsim.policies.networks.layout import layout_shapes
@@ -250,7 +250,7 @@ def output_problems(head: PolicyHead, shapes: Mapping[str, Shape]) -> Iterator[D
     if shape.members is not None:
         yield flaw(("output", "input"), "the result is a vector, not a set", f"{output.input} ({shape})")
         return
-    columns = _columns(output, shape.features)
+    columns = shape.features if output.choices is None else len(output.choices[0])
     if output.choices is not None and len(output.choices) != shape.features:
         yield flaw(("output", "choices"), "one for each number", str(len(output.choices)), str(shape.features))
     if output.low is not None and len(output.low) != shape.features:
@@ -269,10 +269,6 @@ def output_problems(head: PolicyHead, shapes: Mapping[str, Shape]) -> Iterator[D
 
 def _unknown_input(label: str, shapes: Mapping[str, Shape]) -> Diagnostic:
     return flaw(("output", "input"), "no part and no layer has this name", label, ", ".join(list(shapes)[-5:]))
-
-
-def _columns(output: OutputOptions, features: int) -> int:
-    return features if output.choices is None else len(output.choices[0])
 
 
 def _array_problems(arrays: Mapping[str, Array], plan: GraphPlan, dtype: np.dtype[Any]) -> Iterator[Diagnostic]:

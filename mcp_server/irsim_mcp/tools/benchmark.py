@@ -333,11 +333,7 @@ def _defined(values: dict[str, Any], keys: Sequence[str], episodes: int) -> dict
 def _numbers(estimate: dict[str, Any], value: str = "mean") -> list[float]:
     """Value and interval; only the value if there is no interval."""
     values = [estimate[value], estimate["low"], estimate["high"]]
-    return [_rounded(value) for value in values if value is not None]
-
-
-def _rounded(value: float) -> float:
-    return round(value, _DECIMALS)
+    return [round(value, _DECIMALS) for value in values if value is not None]
 
 
 def _text(report: Benchmark) -> str:
