@@ -25,6 +25,7 @@ from irsim.common.installed import version
 from irsim.common.records import ContentError, read_json
 from irsim.episodes.episode import Progress
 from irsim.results.benchmark import BenchmarkResult, SuiteResult, SuiteScenarioFacts
+from irsim.runs.clock import date_now
 from irsim.runs.files import RunError
 from irsim.scenario.limits import Limits
 
@@ -59,10 +60,15 @@ def last_folder() -> Path:
     Raises:
         RunError: No benchmark was started here.
     """
-    plans = sorted(_FOLDER.glob(f"*/{PLAN}"), key=lambda path: path.stat().st_mtime_ns)
+    plans = _plans()
     if not plans:
         raise RunError("no-benchmark", f"{_FOLDER} holds no benchmark", "name its folder with -o")
-    return plans[-1].parent
+    return plans[0].parent
+
+
+def _plans() -> list[Path]:
+    """The plans below the current folder, the one started last first."""
+    return sorted(_FOLDER.glob(f"*/{PLAN}"), key=lambda path: path.stat().st_mtime_ns, reverse=True)
 
 
 def run_plan(
@@ -245,6 +251,7 @@ def _prepare(plan: Plan, folder: Path, resume: bool) -> None:
     if known.exists() and (not known.is_file() or known.read_bytes() != text.encode()):
         raise RunError("other-benchmark", f"{folder} holds another benchmark", "give another folder with -o")
     if not known.exists():
+        date_now(_plans())
         _write(known, text)
     for leftover in (*folder.glob(f"{TEMPORARY}*"), *folder.glob(f"*/{TEMPORARY}*")):
         with suppress(OSError):

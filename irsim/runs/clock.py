@@ -1,16 +1,22 @@
-"""Notices that the clock of the system was set, by comparing it with the time since the system was started."""
+"""Notices that the clock of the system was set, by comparing it with the time since the system was started.
+
+Files that are dated in the future then are dated now, so that the next one is the newest.
+"""
 
 from __future__ import annotations
 
 import os
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-__all__ = ["CLOCK_TOLERANCE_S", "clock_was_set"]
+__all__ = ["CLOCK_TOLERANCE_S", "clock_was_set", "date_now"]
 
 CLOCK_TOLERANCE_S = 60.0
 """Difference of two clocks [s] that counts as none."""
+_TICK_NS = 1_000_000_000
+"""Time [ns] by which dates of files may be late: systems date them by a clock that stands still in between."""
 _BOOT_ID = Path("/proc/sys/kernel/random/boot_id")
 
 
@@ -30,6 +36,21 @@ def clock_was_set(mark: Path) -> bool:
         with os.fdopen(descriptor, "w", encoding="utf-8") as file:
             file.write(f"{boot}\n{up}\n{now}\n")
     return was_set
+
+
+def date_now(files: Sequence[Path], was_set: bool = False) -> None:
+    """Date files now that are dated in the future or, if the clock was set, all files; their order stays.
+
+    Args:
+        files: The files, the latest first.
+        was_set: Whether the clock was set.
+    """
+    now = time.time_ns()
+    limit = 0 if was_set else now + round(CLOCK_TOLERANCE_S * 1e9)
+    for rank, file in enumerate(files):
+        with suppress(OSError):
+            if os.lstat(file).st_mtime_ns > limit:
+                os.utime(file, ns=(now - _TICK_NS - rank,) * 2)
 
 
 def _boot() -> str:

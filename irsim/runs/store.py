@@ -18,7 +18,7 @@ from typing import Any, Literal
 
 from irsim.common.files import TEMPORARY
 from irsim.common.text import clean
-from irsim.runs.clock import CLOCK_TOLERANCE_S, clock_was_set
+from irsim.runs.clock import clock_was_set, date_now
 from irsim.runs.files import RunError, json_of, lock_file, plain_file, refusal, replace_file
 
 __all__ = [
@@ -273,8 +273,6 @@ _TRASH = ".gone-"
 """Prefix of the names of folders that are being deleted."""
 _CLOCK = ".clock"
 """File that tells whether the clock was set since the last deletion."""
-_TICK_NS = 1_000_000_000
-"""Time [ns] by which dates of files may be late: systems date them by a clock that stands still in between."""
 _TIDIED = ".tidied"
 """File whose modification time is the time of the last tidying."""
 _TIDYING_PERIOD_S = 5.0
@@ -297,7 +295,8 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: str | None 
         Ids of the deleted runs.
     """
     was_set = runs.is_dir() and clock_was_set(runs / _CLOCK)
-    _date_anew(runs, was_set)
+    for name in (META, SCENARIO_FILE):  # when a run was used last, and when it began
+        date_now([folder / name for _, folder in dated_folders(runs, (name,))], was_set)
     if not was_set:
         _sweep(runs)
     runs_used = dated_folders(runs, (META,))[::-1]  # the most recently used one last
@@ -315,16 +314,6 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: str | None 
         else:
             _sweep_run(leftovers)
     return deleted
-
-
-def _date_anew(runs: Path, was_set: bool) -> None:
-    """Date runs now that are dated in the future or, if the clock was set, all runs; their order stays."""
-    now = time.time_ns()
-    limit = 0 if was_set else now + round(CLOCK_TOLERANCE_S * 1e9)
-    for rank, (used, folder) in enumerate(dated_folders(runs, (META,))):
-        if used > limit:
-            with suppress(OSError):
-                os.utime(folder / META, ns=(now - _TICK_NS - rank,) * 2)
 
 
 def tidy(runs: str | Path) -> None:

@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import re
+import time
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from PIL import Image
 import irsim
 import irsim.benchmarks
 from irsim.benchmarks.plan import Plan, file_plan
-from irsim.benchmarks.stored import EPISODES, PLAN, RESULTS, default_folder, resume_benchmark, run_plan
+from irsim.benchmarks.stored import EPISODES, PLAN, RESULTS, default_folder, last_folder, resume_benchmark, run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.runs.files import RunError
 from tests.benchmarks.conftest import SUITE
@@ -138,3 +139,16 @@ def test_decisions_of_behaviors_are_timed_in_an_episode_of_their_own(tmp_path: P
     [timed] = json.loads((tmp_path / "timing.json").read_text())["policies"].values()
     assert (timed["episodes"], timed["episodes_in_all"], timed["decisions"]) == (1, 2, first.steps - 1)
     assert 0 < timed["per_robot"]["mean_ms"] < timed["per_decision"]["mean_ms"]
+
+
+def test_the_last_benchmark_is_the_one_started_last_after_the_clock_was_set_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scene.yaml").write_text(SCENE, encoding="utf-8")
+    plans = [file_plan(["scene.yaml"], ["dash"], [seed], steps=1) for seed in (7, 8)]
+    run_plan(plans[0], default_folder(plans[0]), workers=1)
+    ahead = time.time() + 365 * 86400
+    os.utime(default_folder(plans[0]) / PLAN, (ahead, ahead))
+    run_plan(plans[1], default_folder(plans[1]), workers=1)
+    assert last_folder() == default_folder(plans[1])

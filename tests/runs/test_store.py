@@ -21,7 +21,7 @@ import irsim
 from irsim.runs import RunError, list_runs, open_run
 from irsim.runs.files import claim, replace_file
 from irsim.runs.store import META, find_run, make_run_folder, mark_cancelled, prune, runs_folder, status_of, tidy
-from tests.runs.conftest import recorded
+from tests.runs.conftest import ROOM, recorded
 
 pytestmark = pytest.mark.one_python
 
@@ -121,6 +121,22 @@ def test_runs_from_the_future_are_as_new_as_those_of_now(workspace: Path) -> Non
     assert abs((future / META).stat().st_mtime - time.time()) < 60
     find_run(now.name, workspace)
     assert prune(runs_folder(workspace), quota=1500) == [future.name]
+
+
+def test_the_last_run_is_the_one_started_last_after_the_clock_was_set_back(
+    workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(workspace)
+    (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
+    ids = [irsim.run("room.yaml", record=True, steps=1).run_id for _ in range(2)]
+    ahead = time.time() + 365 * 86400
+    for rank, run_id in enumerate(ids):
+        for file in (workspace / ".irsim" / "runs" / str(run_id)).iterdir():
+            os.utime(file, (ahead + rank, ahead + rank))
+    os.utime(workspace / ".irsim" / "runs" / ".tidied", (ahead, ahead))
+    last = irsim.run("room.yaml", record=True, steps=1).run_id
+    assert find_run("last").name == last
+    assert [run.id for run in list_runs()] == [last, *reversed(ids)]
 
 
 def test_names_are_slugs() -> None:
