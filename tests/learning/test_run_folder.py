@@ -51,6 +51,18 @@ def test_a_folder_holds_one_training_at_a_time(tmp_path: Path) -> None:
     RunFolder(tmp_path / "run").begin(opened, folder, {}, TrainingSettings())
 
 
+def test_a_training_goes_on_with_its_own_settings_and_another_number_of_steps(tmp_path: Path) -> None:
+    opened, folder = open_task(corridor())
+    first = RunFolder(tmp_path / "run")
+    started = first.settings_for(TrainingSettings, TrainingSettings(rate=1e-3), None, resume=False)
+    first.begin(opened, folder, {}, started)
+    again = first.settings_for(TrainingSettings, None, 7000, resume=True)
+    assert (again.rate, again.steps) == (1e-3, 7000)
+    assert first.settings_for(TrainingSettings, None, None, resume=True) == again
+    with pytest.raises(ArgumentError, match="holds a training with ppo"):
+        first.settings_for(SarlSettings, None, None, resume=True)
+
+
 def test_the_scenario_of_a_template_is_kept_too(tmp_path: Path) -> None:
     opened, folder = open_task(corridor())
     RunFolder(tmp_path / "run").begin(opened, folder, {}, TrainingSettings())

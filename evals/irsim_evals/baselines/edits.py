@@ -12,12 +12,13 @@ import yaml
 from irsim.bundled.templates.fill import format_value, replace_values
 from irsim.common.text import plural
 from irsim.diagnostics.diagnostic import Path
+from irsim.scenario.model.lookup import at
 from irsim.scenario.yaml.entries import add_entry
 from irsim_evals.baselines.language import BEHAVIORS, DRIVES, NOUNS, first, has, plain, quantities
 from irsim_evals.baselines.layouts import lidar
 from irsim_evals.baselines.request import request_of
 
-__all__ = ["Edited", "add", "edit", "entries", "is_correction", "is_unclear", "replace", "value_at"]
+__all__ = ["Edited", "add", "edit", "entries", "is_correction", "is_unclear", "replace"]
 
 replace = replace_values
 Edited = tuple[str, list[str]]
@@ -54,16 +55,6 @@ _LESS = (
 _WORLD = r"\bworlds?\b|\bwelt\b|\bmundo\b|世界|场景|\barena\b|\broom\b|\bhall\b"
 _CORRECTION = r"^(?:no\b|nein\b|not that|i meant|i mean|sorry|ich meinte|quería decir|me refería|不)"
 _NOT = r",?\s*\b(?:not|nicht|no)\b (?:the|der|die|das|den|el|la|los|las)\b[^.;]*"
-
-
-def value_at(data: Any, path: Path) -> Any:
-    """The value at a path; None if the path leads nowhere."""
-    for part in path:
-        try:
-            data = data[part]
-        except (KeyError, IndexError, TypeError):
-            return None
-    return data
 
 
 def entries(data: Any, section: str) -> Iterator[tuple[Path, dict[str, Any]]]:
@@ -148,7 +139,7 @@ def _set_or_scale(source: str, data: Any, part: str) -> Edited:
     changes: dict[Path, Any] = {}
     if factor is not None:
         for path in paths:
-            old = value_at(data, path)
+            old = at(data, path)
             new = round(old * factor, 6)
             changes[path] = int(new) if isinstance(old, int) and new == int(new) else new
     else:
@@ -186,7 +177,7 @@ def _paths(data: Any, attribute: str, part: str) -> list[Path]:
         candidates = [("world", "width"), ("world", "height")]
     else:
         candidates = [("world", attribute)]
-    return [path for path in candidates if isinstance(value_at(data, path), (int, float))]
+    return [path for path in candidates if isinstance(at(data, path), (int, float))]
 
 
 def _factor(part: str) -> float | None:

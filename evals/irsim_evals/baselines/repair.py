@@ -17,9 +17,10 @@ import yaml
 
 from irsim.bundled.templates.fill import parse_path
 from irsim.diagnostics.diagnostic import Edit
+from irsim.scenario.model.lookup import at
 from irsim.scenario.yaml.rewrite import rewrite
 from irsim_evals.baselines import rules
-from irsim_evals.baselines.edits import entries, value_at
+from irsim_evals.baselines.edits import entries
 from irsim_evals.baselines.language import has, plain
 from irsim_evals.baselines.request import Request, Task, request_of
 from irsim_evals.baselines.scenario import describe
@@ -105,7 +106,7 @@ def _edit_of(finding: dict[str, Any], data: Any) -> Edit | None:
     if suggested is not None:
         return Edit(suggested["action"], parse_path(suggested["path"]), suggested["value"])
     free = _FREE.search(finding["fix"] or "")
-    old = value_at(data, path)
+    old = at(data, path)
     if free is not None and isinstance(old, list) and len(old) >= 2 and not isinstance(old[0], list):
         return Edit("replace", path, [float(free[1]), float(free[2]), *old[2:]])
     if finding["code"] == "unknown-key":

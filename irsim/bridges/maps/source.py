@@ -261,8 +261,8 @@ class Kind:
         name: Its name.
         title: Such a file in messages, as in ``a mesh``.
         suffixes: How names of such files end.
-        accepts: Whether a file may be of this kind, by its first bytes.
         read: Reads a file; its errors are :class:`~irsim.bridges.base.BridgeError`.
+        accepts: Whether a file may be of this kind, by its first bytes. Files of XML are known by their root element.
         unknown: Whether unknown cells count as free, occupied or unknown unless the caller decides.
         extra: Extra of pyproject.toml whose libraries it needs.
         libraries: Their modules.
@@ -275,8 +275,8 @@ class Kind:
     name: str
     title: str
     suffixes: tuple[str, ...]
-    accepts: Callable[[bytes], bool]
     read: Callable[[Path, ImportOptions, ImportLimits], SceneTriangles | Occupancy | Outlines]
+    accepts: Callable[[bytes], bool] = lambda head: False
     unknown: str = "occupied"
     extra: str = "mesh"
     libraries: tuple[str, ...] = ()

@@ -8,7 +8,7 @@ import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 from weakref import finalize
 
 import yaml
@@ -21,10 +21,11 @@ from irsim.common.yaml.plain import read_plain_yaml
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.scene import scenario_text
 from irsim.learning.tasks.task import Task
-from irsim.learning.training.settings import AnySettings, settings_class
+from irsim.learning.training.settings import AnySettings, SarlSettings, TrainingSettings, settings_class
 from irsim.runs.files import lock_file
 from irsim.scenario.messages.translate import option_message, option_problems
 
+S = TypeVar("S", TrainingSettings, SarlSettings)
 __all__ = ["RunFolder", "merit"]
 
 
@@ -119,6 +120,32 @@ class RunFolder:
         except ValidationError as error:
             message, _ = option_message(option_problems(error, data, settings_class(str(data["algo"]))))
             raise _damaged(file, message) from None
+
+    def settings_for(self, kind: type[S], given: S | None, steps: int | None, *, resume: bool) -> S:
+        """The settings of a training that begins or goes on.
+
+        Args:
+            kind: Their class.
+            given: Settings of a training that begins; None for the usual ones.
+            steps: Another number of steps; None for that of the settings.
+            resume: Go on with the training in the folder, which no other program may do at the same time.
+
+        Raises:
+            ArgumentError: The folder holds no training, one with another algorithm, or one that is running.
+        """
+        settings = given or kind()
+        if resume:
+            self.claim()
+            kept = self.settings()
+            if not isinstance(kept, kind):
+                what = f"{self.path} holds a training with {kept.algo}"
+                raise ArgumentError(what, "resume it with irsim train --resume")
+            settings = kept
+        if steps is not None:
+            settings = settings.model_copy(update={"steps": steps})
+            if resume:
+                self.keep(settings)
+        return settings
 
     def rounds(self) -> list[dict[str, Any]]:
         """Facts of each finished round."""

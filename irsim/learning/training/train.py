@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from irsim.common.extras import require
-from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.sb3_env import SB3VecEnv
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.tasks.task import Task
@@ -95,17 +94,8 @@ def train(
         ScenarioError: The scenario cannot be used.
     """
     run = RunFolder(Path(folder))
-    if resume:
-        run.claim()
-        kept = run.settings()
-        if not isinstance(kept, TrainingSettings):
-            raise ArgumentError(f"{folder} holds a training with {kept.algo}", "resume it with irsim train --resume")
-        settings, task = kept, run.path / "task.yaml"
-    settings = settings or TrainingSettings()
-    if steps is not None:
-        settings = settings.model_copy(update={"steps": steps})
-        if resume:
-            run.keep(settings)
+    settings = run.settings_for(TrainingSettings, settings, steps, resume=resume)
+    task = run.path / "task.yaml" if resume else task
     opened, where = open_task(task)
     one = Worlds(task, 1)
     torch.set_num_threads(threads)

@@ -91,7 +91,6 @@ KIND = Kind(
     name="commonroad",
     title="a scenario of CommonRoad",
     suffixes=(),
-    accepts=lambda head: False,  # it is known by its root element
     read=read,
     unused=NOT_FLAT,
     roots=("commonRoad",),

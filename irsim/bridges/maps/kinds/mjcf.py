@@ -193,7 +193,6 @@ KIND = Kind(
     name="mjcf",
     title="a model of MuJoCo",
     suffixes=(),
-    accepts=lambda head: False,  # it is known by its root element
     read=read,
     unknown="free",
     unused=("slope", "ground", "up", "rotate", "level", "meters_per_unit", "opacity", "lanes"),

@@ -307,7 +307,6 @@ KIND = Kind(
     name="opendrive",
     title="a road network of OpenDRIVE",
     suffixes=(".xodr",),
-    accepts=lambda head: False,  # it is known by its root element
     read=read,
     unused=("slope", "ground", "up", "rotate", "meters_per_unit", "opacity", "root"),
     roots=("OpenDRIVE",),

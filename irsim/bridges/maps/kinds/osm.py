@@ -115,7 +115,6 @@ KIND = Kind(
     name="osm",
     title="an extract of OpenStreetMap",
     suffixes=(".osm",),
-    accepts=lambda head: False,  # it is known by its root element
     read=read,
     unknown="free",
     unused=NOT_FLAT,

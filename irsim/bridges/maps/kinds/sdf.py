@@ -241,7 +241,6 @@ KIND = Kind(
     name="sdf",
     title="a world of Gazebo",
     suffixes=(".sdf", ".world"),
-    accepts=lambda head: False,  # it is known by its root element
     read=read,
     unknown="free",
     unused=("slope", "ground", "up", "rotate", "level", "meters_per_unit", "opacity", "lanes"),

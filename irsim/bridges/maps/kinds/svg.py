@@ -25,7 +25,6 @@ KIND = Kind(
     name="svg",
     title="a plan in SVG",
     suffixes=(".svg",),
-    accepts=lambda head: False,  # it is known by its root element
     read=read,
     unknown="free",
     extra="plans",

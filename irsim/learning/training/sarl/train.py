@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
-from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.training.run_folder import RunFolder, loading, merit
 from irsim.learning.training.sarl.play import Driver, Experience, Memory, play
@@ -154,17 +153,8 @@ def train_sarl(
         ScenarioError: The scenario cannot be used.
     """
     run = RunFolder(Path(folder))
-    if resume:
-        run.claim()
-        kept = run.settings()
-        if not isinstance(kept, SarlSettings):
-            raise ArgumentError(f"{folder} holds a training with {kept.algo}", "resume it with irsim train --resume")
-        settings, task = kept, run.path / "task.yaml"
-    settings = settings or SarlSettings()
-    if steps is not None:
-        settings = settings.model_copy(update={"steps": steps})
-        if resume:
-            run.keep(settings)
+    settings = run.settings_for(SarlSettings, settings, steps, resume=resume)
+    task = run.path / "task.yaml" if resume else task
     opened, where = open_task(task)
     plan = plan_of(opened, settings)
     one = Worlds(task, 1)
