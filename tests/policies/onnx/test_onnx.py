@@ -180,7 +180,7 @@ def test_work_and_memory_are_bounded_before_anything_runs(tmp_path: Path) -> Non
         ({"work": 100}, "too many multiplications"),
         ({"numbers": 100}, "too many numbers"),
         ({"arrays": 3}, "too many arrays, given: 4"),
-        ({"file_bytes": 100}, "the file is too large"),
+        ({"file_bytes": 100}, "it is too large, given"),
         ({"document_bytes": 10}, "the document is too long"),
     ):
         assert what in refused(path, **limit)  # type: ignore[arg-type]
