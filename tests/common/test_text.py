@@ -6,9 +6,10 @@ import io
 import json
 
 import pytest
+import yaml
 
 from irsim.cli.output import prepare_streams
-from irsim.common.text import cell, escape_marks, markdown_code, markdown_text
+from irsim.common.text import cell, decimal, escape_marks, markdown_code, markdown_text, plural
 
 EVIL = "<img src=x onerror=alert(1)> [a](http://evil) | `c` & \u202egnp.exe"
 
@@ -49,3 +50,18 @@ def test_no_command_prints_marks_of_direction(monkeypatch: pytest.MonkeyPatch) -
     stream.flush()
     assert "\u202e".encode() not in raw.getvalue()
     assert b"\\u202egnp.exe gr\xc3\xbcn" in raw.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [(10.0, 4, "10"), (0.5, 4, "0.5"), (-0.00001, 4, "0"), (0.00001, 9, "0.00001"), (1e9, 6, "1000000000")],
+)
+def test_numbers_of_files_have_no_exponent_which_readers_of_yaml_take_for_text(
+    value: float, digits: int, text: str
+) -> None:
+    assert decimal(value, digits) == text
+    assert yaml.safe_load(decimal(value, digits)) == pytest.approx(value, abs=10**-digits)
+
+
+def test_one_thing_is_singular() -> None:
+    assert [plural(count, "wall") for count in (0, 1, 2)] == ["0 walls", "1 wall", "2 walls"]
