@@ -16,7 +16,7 @@ from irsim.results.findings import Finding
 from irsim.results.validation import ValidationReport
 from irsim.scenario.limits import Limits
 from irsim.scenario.locate import locate
-from irsim.scenario.yaml.document import load_path
+from irsim.scenario.yaml.document import text_of
 
 __all__ = ["UserImportError", "import_user_modules", "limits_for", "not_found", "print_diagnostics", "print_findings"]
 
@@ -102,4 +102,5 @@ def _text_of(file: str) -> str | None:
 
         if (scene := suite_scene(file)) is not None:
             return scene.text
-    return load_path(locate(file)).text
+    text = text_of(locate(file))
+    return text if isinstance(text, str) else None

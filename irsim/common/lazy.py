@@ -5,6 +5,7 @@ from __future__ import annotations
 import pkgutil
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
@@ -39,6 +40,7 @@ PUBLIC_HOMES = {
 """Name -> the module that it is imported from when it is first used."""
 
 
+@cache
 def module_names(package: str) -> tuple[str, ...]:
     """Names of the modules of a package, sorted; modules that begin with an underscore help the others."""
     modules = pkgutil.iter_modules(import_module(package).__path__)

@@ -19,7 +19,6 @@ from irsim.episodes.incidents import MAX_LISTED_EXITS, find_exits
 from irsim.episodes.obstructions import find_obstruction
 from irsim.episodes.opening import reproduce_command, seed_to_repeat
 from irsim.episodes.progress import find_circling, has_one_end, no_progress_since, stalled_step
-from irsim.episodes.scene_summary import called
 from irsim.episodes.watching import goal_visibility, watched_metrics, zone_results
 from irsim.navigation.clearances import Approach, least
 from irsim.results.episode import EventRecord, Left, RobotResult
@@ -177,6 +176,7 @@ def _robots(facts: EpisodeFacts) -> list[RobotResult]:
     nearest = _approaches(facts, arrivals) if facts.is_small else {}
     watched = watched_metrics(facts, arrivals)
     visible = goal_visibility(facts, arrivals) if facts.is_small else {}
+    called = {item.name: item.called for item in facts.scenario.objects}
     for row, record in facts.robots.items():
         name, ended, arrival = record.name, outcomes[record.name], arrivals.get(record.name)
         approach, approach_place = nearest.get(row, (None, None))
@@ -196,7 +196,7 @@ def _robots(facts: EpisodeFacts) -> list[RobotResult]:
                 distance_to_goal=math.dist(goals[0][:2], (x, y)) if goals else None,
                 min_clearance=None if approach is None else approach.distance,
                 nearest=None if approach is None else approach.partner,
-                nearest_called=None if approach is None else called(facts.scenario, approach.partner),
+                nearest_called=None if approach is None else called[approach.partner],
                 nearest_at=approach_place,
                 heading_error=_heading_error(record, goals[0], float(heading)) if goals else None,
                 goal_visible_ratio=visible.get(name),

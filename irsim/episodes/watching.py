@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from irsim.common.text import listed, quoted, seconds
-from irsim.metrics.watching import Rows, Watching, goal_visible_ratio, watching_metrics, zone_metrics
+from irsim.metrics.watching import Rows, Watching, blocking_objects, goal_visible_ratio, watching_metrics, zone_metrics
 from irsim.results.episode import ZoneResult
 from irsim.simulation.trace import past_goals, past_poses
 
@@ -49,12 +49,13 @@ def goal_visibility(facts: EpisodeFacts, arrivals: Mapping[str, Event]) -> dict[
         arrivals: First arrivals by name.
     """
     shares: dict[str, float | None] = {}
+    blocking = blocking_objects(facts.simulation)
     for row, record in facts.robots.items():
         poses, goals = past_poses(facts.simulation, row), past_goals(facts.simulation, row)
         if record.name in facts.parked or poses is None or goals is None:
             continue
         rows = slice(arrivals[record.name].step + 1 if record.name in arrivals else None)
-        share = goal_visible_ratio(poses[rows, :2], goals[rows], facts.simulation)
+        share = goal_visible_ratio(poses[rows, :2], goals[rows], facts.simulation, blocking)
         shares[record.name] = None if math.isnan(share) else share
     return shares
 

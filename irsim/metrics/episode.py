@@ -14,7 +14,7 @@ from irsim.metrics.proximity import proximity_metrics
 from irsim.metrics.reward import reward_metrics
 from irsim.metrics.social import social_metrics
 from irsim.metrics.trajectory import Track, tracks
-from irsim.metrics.watching import Rows, Watching, goal_visible_ratio, watching_metrics, zone_metrics
+from irsim.metrics.watching import Rows, Watching, blocking_objects, goal_visible_ratio, watching_metrics, zone_metrics
 from irsim.navigation.clearances import Clearance, clearance
 from irsim.navigation.geodesic import Geodesics, inscribed_radius
 from irsim.simulation.events import partner_of
@@ -85,13 +85,13 @@ def episode_metrics(
     cut = tracks(trace, list(events), distances, simulation)
     geodesics = Geodesics(simulation) if ways is None else ways
     order = [metric.key for metric in METRICS]
-    watching = Watching.read(simulation, events)
+    watching, blocking = Watching.read(simulation, events), blocking_objects(simulation)
     values, flags, zones = [], [], []
     for track in cut:
         rows = Rows(track.first, len(track.pose), track.step_time)
         zones.append(zone_metrics(watching, track.name, rows))
         watched = watching_metrics(watching, track.name, rows)
-        watched["goal_visible_ratio"] = goal_visible_ratio(track.position, track.goal, simulation)
+        watched["goal_visible_ratio"] = goal_visible_ratio(track.position, track.goal, simulation, blocking)
         made, odd = progress_metrics(track, geodesics, inscribed_radius(simulation, track.index))
         near, apart = proximity_metrics(track)
         metrics = outcome_metrics(track) | motion_metrics(track) | near | social_metrics(track) | made | watched

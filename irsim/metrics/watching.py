@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from irsim.simulation.events import Event
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Rows", "Watching", "goal_visible_ratio", "watching_metrics", "zone_metrics"]
+__all__ = ["Rows", "Watching", "blocking_objects", "goal_visible_ratio", "watching_metrics", "zone_metrics"]
 
 Flags = NDArray[np.bool_]
 
@@ -136,16 +136,25 @@ def zone_metrics(watching: Watching, name: str, rows: Rows) -> dict[str, dict[st
     return metrics
 
 
-def goal_visible_ratio(positions: Floats, goals: Floats, simulation: Simulation, world: int = 0) -> float:
+def blocking_objects(simulation: Simulation) -> NDArray[np.uint8]:
+    """(N,) whether each object hides goals: obstacles that never move, maps and the walls, unless ``unobstructed``."""
+    records = simulation.scenario.objects
+    static = np.array([record.static for record in records], dtype=bool)
+    return np.asarray(static & (kinds_of(records) == STATIC), dtype=np.uint8)
+
+
+def goal_visible_ratio(
+    positions: Floats, goals: Floats, simulation: Simulation, blocking: NDArray[np.uint8], world: int = 0
+) -> float:
     """Share of rows in which the straight line from the centre of a robot to its goal meets no static object.
 
-    Static objects are obstacles that never move, maps and the walls around the world, unless they are
-    ``unobstructed``. Touching one blocks the line.
+    Touching one blocks the line.
 
     Args:
         positions: (K, 2) positions of the robot [m].
         goals: (K, 3) its goals; rows without a goal (NaN) do not count.
         simulation: The simulation with the scene of the positions.
+        blocking: (N,) the objects that block the line (:func:`blocking_objects`).
         world: Index of one of its worlds.
 
     Returns:
@@ -154,9 +163,6 @@ def goal_visible_ratio(positions: Floats, goals: Floats, simulation: Simulation,
     known = ~np.isnan(goals[:, :2]).any(axis=1)
     if not known.any():
         return math.nan
-    records = simulation.scenario.objects
-    static = np.array([record.static for record in records], dtype=bool)
-    blocking = static & (kinds_of(records) == STATIC)
     if not blocking.any():
         return 1.0
     free = core.free_lines(
@@ -165,7 +171,7 @@ def goal_visible_ratio(positions: Floats, goals: Floats, simulation: Simulation,
         world,
         np.ascontiguousarray(positions[known], dtype=np.float64),
         np.ascontiguousarray(goals[known, :2], dtype=np.float64),
-        blocking.astype(np.uint8),
+        blocking,
     )
     return float(np.mean(free))
 

@@ -147,13 +147,8 @@ class Registry:
             return self._features[name]
         if self._families:
             self._import_families()
-        elif name.isidentifier() and not name.startswith("_"):
-            module = f"{self.package}.{name}"
-            try:
-                importlib.import_module(module)
-            except ModuleNotFoundError as error:
-                if error.name != module:
-                    raise
+        elif name in module_names(self.package):
+            importlib.import_module(f"{self.package}.{name}")
         if name not in self._features and name in self._plugin_entries():
             self._plugin_entries()[name].load()
         return self._features.get(name)

@@ -335,7 +335,7 @@ def _error_data(error: Exception) -> dict[str, Any]:
         where = getattr(error, "where", None)
         return {"code": code, "what": what, "fix": getattr(error, "fix", None), "where": where}
     if isinstance(error, MemoryError):
-        what = "the work needs more memory than a worker may use"
+        what = str(error) if str(error).startswith("more than") else "the work needs more memory than a worker may use"
         return {"code": "out-of-memory", "what": what, "fix": "use fewer objects, lidar beams or steps"}
     if isinstance(error, OSError) and (name := _own_file(error)) is not None:
         what = f"{clean(name)!r} cannot be read or written: {error.strerror or error}"

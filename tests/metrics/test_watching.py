@@ -12,7 +12,7 @@ import irsim
 from irsim.benchmarks.summary import rows_of
 from irsim.env import Env
 from irsim.metrics import episode_metrics
-from irsim.metrics.watching import goal_visible_ratio
+from irsim.metrics.watching import blocking_objects, goal_visible_ratio
 from irsim.scenario.open import read_scenario
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import past_goals, past_poses, record
@@ -113,7 +113,7 @@ def test_maps_and_goals_inside_of_things_block_the_line() -> None:
     i, j = np.argwhere(cells.occupied)[0]
     middle = np.array(cells.origin) + (np.array([i, j]) + 0.5) * np.array(cells.cell)
     goal = np.array([[*middle, math.nan]])
-    assert goal_visible_ratio(np.array([[0.01, 0.01]]), goal, simulation) == 0.0
+    assert goal_visible_ratio(np.array([[0.01, 0.01]]), goal, simulation, blocking_objects(simulation)) == 0.0
 
 
 def test_undefined_is_nan_and_none_never_0() -> None:

@@ -30,7 +30,7 @@ void near_pairs(const World& world, Scene& scene, AtFixed&& at_fixed, AtMoving&&
   out.clear();
   const auto add = [&](int i, int j) {
     if (world.unobstructed[i] || world.unobstructed[j]) return;
-    if (world.dynamics[i].pushable || world.dynamics[j].pushable) out.emplace_back(std::min(i, j), std::max(i, j));
+    if (world.dynamics[i].pushable || world.dynamics[j].pushable) add_pair(out, Pair{std::min(i, j), std::max(i, j)});
   };
   if (!world.fixed_objects.empty()) {
     for (const int i : world.moving) scene.fixed->grid.query(at_fixed(i), [&](int j) { add(i, j); });

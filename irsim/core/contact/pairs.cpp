@@ -19,7 +19,7 @@ double ContactSolver::reach_per_step() const {
 
 void ContactSolver::add_candidate(int i, int j) {
   if (world_.unobstructed[i] || world_.unobstructed[j]) return;
-  buffers_.found.emplace_back(std::min(i, j), std::max(i, j));
+  add_pair(buffers_.found, Pair{std::min(i, j), std::max(i, j)});
 }
 
 void ContactSolver::find_pairs() {

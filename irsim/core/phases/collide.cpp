@@ -24,10 +24,10 @@ void find_pairs(const World& world, State& state, int w) {
   const auto examine = [&](int i, int j, const Outlines& others) {
     const int a = std::min(i, j), b = std::max(i, j);
     if (judged) {
-      scene.near.push_back({a, b, kInfinity, {}, false});
+      add_pair(scene.near, NearPair{a, b, kInfinity, {}, false});
     } else if (moving.boxes[placed[i].object].meets(others.boxes[placed[j].object]) &&
                touch(moving.footprint(shapes, i), others.footprint(shapes, j))) {
-      pairs.emplace_back(a, b);
+      add_pair(pairs, Pair{a, b});
     } else if (moved) {
       meet(world, state, w, a, b);
     }

@@ -81,7 +81,7 @@ void keep_meeting(const World& world, State& state, int w, const Passage& passag
   const double depth = deepest(passage, when);
   const bool through =
       goes_through(world, state, w, a, b, one, other) || goes_through(world, state, w, b, a, other, one);
-  state.scenes[w].meetings.push_back({a, b, when, where, depth, through});
+  add_pair(state.scenes[w].meetings, Meeting{a, b, when, where, depth, through});
 }
 
 void log_meetings(const World& world, State& state, int w) {

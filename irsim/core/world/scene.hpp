@@ -1,7 +1,9 @@
 // Geometry, contacts and events of one world.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -18,6 +20,22 @@
 namespace irsim {
 
 using Pair = std::pair<int, int>;  // object ids, first < second
+
+/// Pairs of objects of one world that may touch in one step. A crowd has a few for each of its objects; objects in one
+/// place have the square of their number, and would fill the memory.
+constexpr std::size_t kMostPairs = 1'000'000;
+
+/// The error of a step with more; Python sees a MemoryError.
+struct TooManyPairs : std::bad_alloc {
+  const char* what() const noexcept override { return "more than 1,000,000 pairs of objects touch in one step"; }
+};
+
+/// Add a pair to a list of at most kMostPairs.
+template <class List, class Item>
+void add_pair(List& list, const Item& item) {
+  if (list.size() >= kMostPairs) throw TooManyPairs();
+  list.push_back(item);
+}
 
 /// The static objects as planners see them, for whom unknown cells of maps are occupied.
 struct Closed {

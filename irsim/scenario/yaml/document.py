@@ -13,7 +13,7 @@ from irsim.common.yaml.nodes import Mark, Node
 from irsim.diagnostics.diagnostic import Diagnostic, Path
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 
-__all__ = ["Document", "Mark", "load_data", "load_path", "load_text"]
+__all__ = ["Document", "Mark", "load_data", "load_path", "load_text", "text_of"]
 
 _CONTROL_BYTES = bytes(set(range(32)) - {9, 10, 12, 13, 27})
 """Bytes that no text file contains."""
@@ -85,17 +85,25 @@ def _raw_key(node: Node, part: str | int) -> Any:
 def load_path(path: str | os.PathLike[str], limits: Limits = DEFAULT_LIMITS) -> Document:
     """Read a file. Everything wrong with it is listed in ``problems``; nothing raises an exception."""
     name = os.fspath(path)
+    text = text_of(name, limits)
+    if isinstance(text, Diagnostic):
+        return Document(None, [text], True, name=name, path=name, limits=limits)
+    return _document(compose(text, limits), text, name, name, limits)
+
+
+def text_of(name: str, limits: Limits = DEFAULT_LIMITS) -> str | Diagnostic:
+    """The text of a file, which is not read as YAML here; what prevents it from being read as text."""
     content, problem = _content(name, limits)
     if problem is not None:
-        return Document(None, [problem], True, name=name, path=name, limits=limits)
+        return problem
     assert content is not None
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        return Document(None, [_not_text(name, content, error)], True, name=name, path=name, limits=limits)
+        return _not_text(name, content, error)
     if content.translate(None, _CONTROL_BYTES) != content:
-        return Document(None, [_not_text(name, content, None)], True, name=name, path=name, limits=limits)
-    return _document(compose(text, limits), text, name, name, limits)
+        return _not_text(name, content, None)
+    return text
 
 
 def load_text(
