@@ -118,8 +118,17 @@ def part_loops() -> list[str]:
 
 
 def process_starts() -> list[str]:
-    """Files that start a process."""
-    return files_with(r"subprocess\.Popen\(|anyio\.open_process\(|\.Process\(|get_context\(")
+    """Files that start a process; building the core is another program's work."""
+    starts = files_with(
+        r"subprocess\.(Popen|run|call|check_\w+)\(|anyio\.open_process\(|\.Process\(|get_context\([\"']"
+    )
+    return [file for file in starts if not file.startswith("irsim/core/backend")]
+
+
+def child_protocols() -> list[str]:
+    """Files that start a process of this project and talk with it: by pipes, without waiting, or by a fork server."""
+    talking = r"(?s)sys\.executable.*stdin=subprocess\.PIPE|anyio\.open_process\(|get_context\([\"']"
+    return [file for file in process_starts() if re.search(talking, sources()[Path(file)])]
 
 
 def hashes() -> list[str]:
@@ -188,6 +197,7 @@ def rows() -> Iterator[tuple[str, object]]:
         "files that translate errors of models": translators,
         "types that describe a problem": problem_types,
         "files that start a process": process_starts,
+        "files that talk with a process of this project": child_protocols,
         "files that hash": hashes,
         "files that read within a limit": limited_reads,
         "files that name the version of JSON Schema": schema_versions,

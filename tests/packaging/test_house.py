@@ -17,6 +17,7 @@ from tests.packaging import house
         (house.part_loops, 1),
         (house.process_limits, 1),
         (house.process_starts, 7),
+        (house.child_protocols, 3),
         (house.problem_types, 5),
         (house.translators, 1),
         (house.hashes, 1),

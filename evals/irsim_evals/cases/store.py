@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from irsim.bundled.templates.fill import evaluate
+from irsim.common.data_files import read_yaml
 from irsim_evals.cases.drawing import draw
 from irsim_evals.cases.model import Case, Parameter
 from irsim_evals.grader.artefact import BINARY, Answer
@@ -155,7 +154,7 @@ def raw_case(case_id: str) -> Any:
     Raises:
         KeyError: There is no such case.
     """
-    return yaml.safe_load(_case_files()[case_id].read_text(encoding="utf-8"))
+    return read_yaml(_case_files()[case_id].read_text(encoding="utf-8"))
 
 
 def case_of(case_id: str, seed: int | None = None) -> Instance:

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -20,9 +18,8 @@ import numpy as np
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import Triangles
 from irsim.bridges.maps.source import ImportLimits, unusable
-from irsim.common.child import ONE_THREAD, limit, python
+from irsim.common.child import ONE_THREAD, Child, answers, limit, lines, python, write_line
 from irsim.common.extras import ExtraError
-from irsim.common.held import for_children
 from irsim.diagnostics.errors import CodedError
 
 __all__ = ["Refused", "read_apart", "serve"]
@@ -53,42 +50,31 @@ def read_apart(
         ExtraError: A library is missing.
     """
     with tempfile.TemporaryDirectory(prefix="irsim-import-") as folder:
-        out = Path(folder) / "triangles.npy"
+        out, errors = Path(folder, "triangles.npy"), Path(folder, "errors.txt")
         asked = {"file": os.path.abspath(path), "out": str(out), "triangles": limits.triangles, "bytes": limits.bytes}
+        with errors.open("wb") as stream:  # Python would import modules from the present folder
+            child = Child(python(module), cwd=folder, env=os.environ | _ENVIRONMENT, stderr=stream)
         try:
-            done = subprocess.run(
-                python(module),
-                input=json.dumps(asked | (request or {})),
-                capture_output=True,
-                text=True,
-                errors="replace",
-                timeout=limits.seconds,
-                check=False,
-                cwd=folder,  # from which Python would import modules
-                env=os.environ | _ENVIRONMENT,
-                pass_fds=for_children()[1],
-            )
-        except subprocess.TimeoutExpired:
+            child.send(json.dumps(asked | (request or {})).encode())
+            line = child.receive(limits.seconds)
+            ended = "" if line else child.how_ended()
+        finally:
+            child.end()
+        if line is None:
             what = f"reading it took longer than {limits.seconds:g} s"
-            raise unusable(path, what, "give a smaller file, such as one without instances") from None
-        answer = _answer(done.stdout)
+            raise unusable(path, what, "give a smaller file, such as one without instances")
+        if not line:
+            text = errors.read_text(encoding="utf-8", errors="replace")
+            said_lines = [one.strip() for one in text.splitlines() if one.strip() and not one.startswith("#")]
+            said = f"; {said_lines[-1][:200]}" if said_lines else ""
+            raise unusable(path, f"the library that reads it failed on it ({ended}{said})")
+        answer = json.loads(line)
         if "error" in answer:
             if "code" not in answer:
                 raise unusable(path, answer["error"], answer.get("fix"))
             kind = ExtraError if answer["code"] == "missing-extra" else BridgeError
             raise kind(answer["code"], answer["error"], answer["fix"])
-        if done.returncode != 0 or not out.is_file():
-            lines = [line.strip() for line in done.stderr.splitlines() if line.strip() and not line.startswith("#")]
-            said = f"; {lines[-1][:200]}" if lines else ""
-            raise unusable(path, f"the library that reads it failed on it (exit code {done.returncode}{said})")
         return np.load(out, allow_pickle=False), answer
-
-
-def _answer(text: str) -> dict[str, Any]:
-    """The answer of the process: its last line of JSON."""
-    lines = [line for line in text.splitlines() if line.startswith("{")]
-    result = json.loads(lines[-1]) if lines else {}
-    return result if isinstance(result, dict) else {}
 
 
 def serve(read: Callable[[Path, dict[str, Any]], tuple[Triangles, dict[str, Any]]]) -> None:
@@ -97,7 +83,8 @@ def serve(read: Callable[[Path, dict[str, Any]], tuple[Triangles, dict[str, Any]
     Args:
         read: Triangles of a file, and what there is to say about them as JSON.
     """
-    request = json.loads(sys.stdin.read())
+    pipe = answers()
+    request = json.loads(lines().get())
     limit(memory=_MEMORY)
     try:
         triangles, answer = read(Path(request["file"]), request)
@@ -109,7 +96,7 @@ def serve(read: Callable[[Path, dict[str, Any]], tuple[Triangles, dict[str, Any]
     except MemoryError:
         answer = {"error": "it does not fit into memory", "fix": "give a smaller file"}
     except Exception as error:  # whatever the library stumbles over is the file's fault
-        lines = str(error).strip().splitlines() or [""]
-        answer = {"error": f"it is damaged ({type(error).__name__}: {lines[-1][:150]})"}
-    print("\n" + json.dumps(answer), flush=True)
+        last = (str(error).strip().splitlines() or [""])[-1]
+        answer = {"error": f"it is damaged ({type(error).__name__}: {last[:150]})"}
+    write_line(pipe, answer)
     os._exit(0)  # what the library does at its end can fail, and nothing is left to do
