@@ -34,7 +34,6 @@ KNOWN = {
     "evals/irsim_evals/baselines/edits.py": "texts of the package",
     "evals/irsim_evals/baselines/repair.py": "texts of the package",
     "evals/irsim_evals/baselines/server.py": PEER,
-    "evals/irsim_evals/cases/store.py": "files of the package",
     "evals/irsim_evals/grader/run_program.py": "the log of a process of irsim_evals",
     "evals/irsim_evals/proof/mutants.py": "texts of the package",
     "evals/irsim_evals/proof/oracle/opinions.py": "texts of the package",
