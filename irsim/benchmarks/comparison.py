@@ -43,7 +43,7 @@ from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.results.findings import Finding
 from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.open import import_modules, read_scenario, source_of
+from irsim.scenario.open import document_of, import_modules, read_scenario
 from irsim.scenario.perturbation import (
     Perturbations,
     perturbation_text,
@@ -52,7 +52,7 @@ from irsim.scenario.perturbation import (
     read_perturbations,
 )
 from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
-from irsim.scenario.yaml.document import Document, load_path, load_text
+from irsim.scenario.yaml.document import Document, load_text
 
 __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "benchmark", "logged"]
 
@@ -308,8 +308,7 @@ def _document(source: str | Document, limits: Limits) -> Document:
         return source
     if "\n" in source:
         return load_text(source, limits=limits)
-    located = source_of(source, None, limits)
-    return located if isinstance(located, Document) else load_path(located, limits)
+    return document_of(source, None, limits)
 
 
 def _check_names(names: list[str], policies: list[str]) -> None:

@@ -17,10 +17,10 @@ from irsim.common.hashing import digest, file_digest
 from irsim.common.installed import version as this_version
 from irsim.policies.policy import Policy
 from irsim.scenario.limits import DEFAULT_LIMITS
-from irsim.scenario.open import import_modules, source_of
+from irsim.scenario.open import document_of, import_modules
 from irsim.scenario.perturbation import perturbation_text, read_perturbations
 from irsim.scenario.read import read
-from irsim.scenario.yaml.document import Document, load_path, load_text
+from irsim.scenario.yaml.document import Document, load_text
 
 __all__ = ["Plan", "PlannedScenario", "file_plan", "map_hashes", "short_hash"]
 
@@ -151,7 +151,7 @@ def file_plan(
         ScenarioNotFoundError: A file does not exist.
         InputError: The seeds are invalid, or the file of a policy does not exist.
     """
-    documents = [_document(file) for file in files]
+    documents = [document_of(file, None, None) for file in files]
     scenarios = [
         PlannedScenario(
             name=file, family=file, text=str(document.text), maps=maps,
@@ -174,8 +174,3 @@ def file_plan(
         imports=list(imports),
         perturb=[perturbation_text(item) for item in read_perturbations(perturb)],
     )
-
-
-def _document(file: str) -> Document:
-    located = source_of(file, None, None)
-    return located if isinstance(located, Document) else load_path(located)

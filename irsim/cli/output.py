@@ -35,7 +35,13 @@ _LINE_PERIOD_S = 30.0
 
 
 def prepare_streams() -> None:
-    """Make printing safe: characters that the encoding of the terminal lacks, or that mislead readers, are escaped."""
+    """Make printing safe: characters that the encoding of the terminal lacks, or that mislead readers, are escaped.
+
+    What is printed to a closed stream is lost, as in a service without a terminal.
+    """
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError, ValueError):
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]

@@ -19,7 +19,7 @@ from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
-__all__ = ["import_modules", "open_scenario", "read_scenario", "source_of"]
+__all__ = ["document_of", "import_modules", "open_scenario", "read_scenario"]
 
 
 def open_scenario(
@@ -68,9 +68,8 @@ def read_scenario(
         InputError: ``behavior`` is not a valid behavior.
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
-    source = path if isinstance(path, Document) else source_of(path, text, limits)
+    document = path if isinstance(path, Document) else document_of(path, text, limits)
     if behavior is not None:
-        document = source if isinstance(source, Document) else load_path(source, limits or DEFAULT_LIMITS)
         try:
             check_behavior_name(behavior)
             scenario, diagnostics = read_with_behavior(document, parse_behavior(behavior), strict=strict)
@@ -79,11 +78,11 @@ def read_scenario(
             raise
         scenario.text = document.text  # a recorded run keeps the text of the user, not the one with the other behavior
         return scenario, diagnostics
-    return or_raise(read(source, strict=strict, limits=limits or DEFAULT_LIMITS))
+    return or_raise(read(document, strict=strict, limits=limits or DEFAULT_LIMITS))
 
 
-def source_of(path: str | Path | None, text: str | None, limits: Limits | None) -> str | Document:
-    """The path of a scenario file, found by its name, or the document of a text.
+def document_of(path: str | Path | None, text: str | None, limits: Limits | None) -> Document:
+    """The document of a scenario file, found by its name, or of a text.
 
     Raises:
         ScenarioNotFoundError: There is no such file.
@@ -98,7 +97,7 @@ def source_of(path: str | Path | None, text: str | None, limits: Limits | None) 
                 f"path must be the path of a file, got {as_given(path)}",
                 "give the path of a file, or its content as text",
             )
-        return locate(path)
+        return load_path(locate(path), limits or DEFAULT_LIMITS)
     given: Any = text
     if not isinstance(given, str):
         fix = "decode it: text.decode()" if isinstance(given, bytes) else "give the YAML text of a scenario"

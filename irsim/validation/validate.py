@@ -14,9 +14,8 @@ from irsim.results.findings import Finding
 from irsim.results.validation import DryRun, Fix, ScenarioDiff, ValidationReport
 from irsim.scenario.autofix import repair_text
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.open import source_of
+from irsim.scenario.open import document_of
 from irsim.scenario.read import Reading, read
-from irsim.scenario.yaml.document import Document, load_path
 from irsim.validation.diff.compare import compare
 from irsim.validation.dry_run import dry_run
 from irsim.validation.feasibility.check import feasibility_findings
@@ -52,10 +51,10 @@ def validate(
         ValueError: Neither or both of ``path`` and ``text`` are given, or both of ``base`` and ``base_text``.
     """
     most = limits or DEFAULT_LIMITS
-    reading = read(source_of(path, text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
+    reading = read(document_of(path, text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
     report = report_of(reading, str(path) if path is not None else "(text)")
     if base is not None or base_text is not None:
-        other = read(source_of(base, base_text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
+        other = read(document_of(base, base_text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
         report.changes = compare(other, reading, seed=seed)
         _mark_old(report.findings, other)
     if simulate and reading.scenario is not None:
@@ -83,8 +82,7 @@ def fix(
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     most = limits or DEFAULT_LIMITS
-    source = source_of(path, text, limits)
-    document = source if isinstance(source, Document) else load_path(source, most)
+    document = document_of(path, text, limits)
     if document.text is None:  # the file could not be read
         return "", report_of(read(document, strict=strict, limits=most), str(path))
     mended = repair_text(document.text, name=document.name, path=document.path, strict=strict, limits=most)
@@ -121,7 +119,7 @@ def diff(
     """
     most = limits or DEFAULT_LIMITS
     pair = ((before, before_text), (after, after_text))
-    a, b = (read(source_of(path, text, limits), strict=True, limits=most) for path, text in pair)
+    a, b = (read(document_of(path, text, limits), strict=True, limits=most) for path, text in pair)
     return compare(a, b, seed=seed)
 
 

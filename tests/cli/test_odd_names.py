@@ -60,3 +60,10 @@ def test_names_that_are_no_files_are_refused(irsim: Run, words: list[str], code:
     Path("people.txt").write_text("kept")
     assert f"error {code}" in irsim(*words).stderr
     assert Path("people.txt").read_text() == "kept"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="names of files are one line there")
+def test_a_name_of_two_lines_is_a_name_and_no_text(irsim: Run) -> None:
+    Path("a\nroom.yaml").write_text(ROOM)
+    for command in ("validate", "run"):
+        irsim(command, "a\nroom.yaml", code=0)

@@ -111,3 +111,13 @@ def test_help_loads_neither_models_nor_pictures() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "loaded []"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell closes the stream")
+@pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-"])
+def test_a_closed_stream_loses_only_what_is_printed_to_it(tmp_path: Path, room: Path, closed: str) -> None:
+    shell = ["bash", "-c", f'"$0" -m irsim run room.yaml --record-to kept {closed}', sys.executable]
+    done = subprocess.run(shell, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "kept" / "run.json").is_file()
+    assert ("outcome" in done.stdout or "success" in done.stdout) == (closed != ">&-")
