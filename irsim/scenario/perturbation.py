@@ -29,6 +29,8 @@ _ROLES = ("robot", "obstacle")
 _MAX_NAMED = 3
 """Number of names that a message lists."""
 _FIX = "give spreads such as position=0.1,heading=10deg,speed=10%,delay=2, and objects=NAME,… for some objects only"
+_MAX_DELAY = 100_000
+"""Longest delay of a start, in seconds."""
 _DIGITS = 12
 """Significant digits of a spread, so that its text on a command line is exact."""
 
@@ -73,7 +75,7 @@ class Perturbation(Options):
     speed: Annotated[Number, Field(ge=0, lt=1), _WithUnit("1"), AfterValidator(_rounded)] | None = None
     """Largest change of all speeds, either way, as a share: limits of forward and sideways speed, and the speeds in
     the options of behaviors."""
-    delay: Annotated[Seconds, Field(ge=0), _WithUnit("s"), AfterValidator(_rounded)] | None = None
+    delay: Annotated[Seconds, Field(ge=0, le=_MAX_DELAY), _WithUnit("s"), AfterValidator(_rounded)] | None = None
     """Longest time for which an object stands still at its start; the shortest is 0. The clock runs meanwhile."""
     objects: Annotated[list[str], Field(min_length=1)] | None = None
     """Names, tags and roles (`robot`, `obstacle`) of the objects; null is all. Objects that never move take part only
@@ -87,7 +89,7 @@ _ALLOWED = {
     "position": "a number ≥ 0 [m]",
     "heading": "a number from 0 to 3.1416 [rad]",
     "speed": "a share from 0 to less than 1",
-    "delay": "a number ≥ 0 [s]",
+    "delay": f"a number from 0 to {_MAX_DELAY} [s]",
     "objects": "a list of names, tags or roles",
 }
 _PARTS = {

@@ -7,6 +7,7 @@ import pickle
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from irsim.common.hashing import digest
 from irsim.diagnostics.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ def save_simulation(simulation: Simulation) -> bytes:
         raise InputError("a bridge takes part in the run", "take snapshots where no bridge is open")
     memory = {
         "ids": simulation.ids.tolist(),
+        "scenario": _scenario(simulation),
         "mode": simulation.world.collision_mode,
         "reseeded": simulation._reseeded,
         "rng": simulation._rng,
@@ -45,7 +47,8 @@ def load_simulation(simulation: Simulation, data: bytes) -> None:
     """
     memory = load(data, simulation, _OWNER)
     parts = list(_parts(simulation))
-    if memory["ids"] != simulation.ids.tolist() or len(memory[_PARTS]) != len(parts):
+    same = memory["ids"] == simulation.ids.tolist() and memory["scenario"] == _scenario(simulation)
+    if not same or len(memory[_PARTS]) != len(parts):
         raise _of_another()
     try:
         simulation.state.load(memory["state"])
@@ -55,6 +58,11 @@ def load_simulation(simulation: Simulation, data: bytes) -> None:
     simulation._reseeded, simulation._rng = memory["reseeded"], memory["rng"]
     for part, remembered in zip(parts, memory[_PARTS], strict=True):
         part.recall(remembered)
+
+
+def _scenario(simulation: Simulation) -> str:
+    """What tells scenarios apart, as they are written."""
+    return digest(repr(simulation.scenario.document))
 
 
 def _of_another() -> InputError:

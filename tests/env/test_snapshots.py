@@ -145,3 +145,15 @@ def test_damaged_states_are_refused(tmp_path: Path) -> None:
     for data in (b"", whole[:-1], whole + b"x", whole[: len(whole) // 2], b"\xff" * len(whole)):
         with pytest.raises(ValueError, match="snapshot"):
             state.load(data)
+
+
+@pytest.mark.parametrize(
+    ("part", "key", "value"), [("world", "step_time", 0.5), ("world", "width", 50), ("robot", "shape", {"radius": 0.9})]
+)
+def test_snapshots_of_a_scenario_that_was_changed_are_refused(part: str, key: str, value: Any, tmp_path: Path) -> None:
+    scenario = crowd("dash")
+    taken = opened(scenario, tmp_path).snapshot()
+    opened(scenario, tmp_path).restore(taken)
+    scenario[part][key] = value | {"name": "circle"} if isinstance(value, dict) else value
+    with pytest.raises(InputError, match="another scenario"):
+        opened(scenario, tmp_path).restore(taken)

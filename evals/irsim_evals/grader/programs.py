@@ -126,7 +126,7 @@ def rehearse_program(folder: Path, name: str, seconds: float = SECONDS) -> Print
 
 
 def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
-    command = [sys.executable, "-I", "-m", "irsim_evals.grader.run_program", name, *([str(log)] if log else [])]
+    command = _command(name, *([str(log)] if log else []))
     environment = {"PATH": os.defpath, "MPLBACKEND": "Agg", "HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     with (folder / ".printed").open("wb") as output:
         process = subprocess.Popen(
@@ -150,6 +150,10 @@ def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
         why = f"{name} ended with exit code {code}: {lines[-1] if lines else ''}"[:300]
         return Printed(False, text, why, episodes=episodes)
     return Printed(True, text, episodes=episodes)
+
+
+def _command(*arguments: str) -> list[str]:
+    return [sys.executable, "-I", "-m", "irsim_evals.grader.run_program", *arguments]
 
 
 def problems_of(text: str) -> list[str]:
