@@ -11,8 +11,8 @@ import json
 import os
 import threading
 import time
-from collections.abc import Mapping
-from contextlib import AbstractContextManager, suppress
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -50,7 +50,7 @@ from irsim_mcp.worker import (
     workspace_data,
 )
 
-__all__ = ["Jobs"]
+__all__ = ["Jobs", "readable"]
 
 _JOBS_FOLDER = "jobs"
 _STEM = "benchmark"
@@ -198,12 +198,13 @@ class Jobs:
 
     @held
     def _state(self, job: Path) -> dict[str, Any]:
-        return _state(job)
+        with readable(job.name):
+            return _state(job)
 
     @held
     def _find_state(self, job_id: str) -> tuple[Path, dict[str, Any]]:
         job = self._find(job_id)
-        return job, _state(job)
+        return job, self._state(job)
 
     def _folder(self) -> Path:
         try:
@@ -229,6 +230,22 @@ class Jobs:
             fix += "; jobs are deleted after 24 h: benchmark with the same arguments gives the same result again"
             raise failure("unknown-job", f"there is no job {clean(job_id)!r}", where="job_id", fix=fix)
         return job_folder
+
+
+@contextmanager
+def readable(job_id: str) -> Iterator[None]:
+    """Have files of a job that others have changed refused, in a block that uses what they hold.
+
+    Raises:
+        ToolError: A part is missing, or is of another kind.
+    """
+    try:
+        yield
+    except RunError as error:
+        raise failure(error.code, error.message, fix=error.fix) from None
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        what = f"the files of {clean(job_id)} have been changed ({type(error).__name__}: {error})"
+        raise failure("unreadable-run", what, fix="call benchmark again, which makes a new job") from None
 
 
 def _state(job: Path) -> dict[str, Any]:

@@ -300,7 +300,7 @@ def _rename_to_new(temporary: Path, target: Path) -> None:
 
 @contextmanager
 def set_aside(target: Path) -> Iterator[None]:
-    """Set aside the folder of an earlier export of the same run, which comes back if the new one fails."""
+    """Set aside the folder of an earlier export of the same run, which comes back if no new one takes its place."""
     if not os.path.lexists(target):
         yield
         return
@@ -312,6 +312,8 @@ def set_aside(target: Path) -> Iterator[None]:
     try:
         yield
     except BaseException:
-        aside.rename(target)
+        with suppress(OSError):  # another call has written one meanwhile
+            aside.rename(target)
         raise
-    shutil.rmtree(aside, ignore_errors=True)
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)

@@ -309,3 +309,17 @@ async def test_two_names_of_one_argument_are_not_mixed(client: Caller) -> None:
     assert (await client.error("run_episode", scenario_yaml=ROOM, policy="dash", behavior="dash")).startswith(
         "bad-argument: policy and behavior are"
     )
+
+
+@pytest.mark.parametrize("text", ["[]", "{}", '{"rows": 1}', '{"rows": [], "episodes": [1]}', '{"error": 3}', "null"])
+async def test_files_of_a_job_that_others_changed_are_refused(client: Caller, workspace: Path, text: str) -> None:
+    data = data_of(await client.call("benchmark", scenarios=[ROOM], policies=["dash"], seeds=2))
+    result = workspace / data["artifact"]
+    result.write_text(text)
+    for name, words in (("get_job", {"job_id": data["job_id"]}), ("inspect_run", {"run_id": data["job_id"]})):
+        answer = await client.call(name, **words)
+        assert answer.is_error, name
+        assert error_of(answer).startswith(("unreadable-run", "worker-failed", "bad-argument: job")), (
+            name,
+            error_of(answer),
+        )

@@ -92,6 +92,9 @@ def export_run(
         with new_folder(target) if form.folder else replacing(target, overwrite=overwrite) as path:
             notes = form.write(episodes, path, target.name)
     except OSError as error:
+        if form.folder and os.path.lexists(target):
+            what = f"'{target}' was written by another program meanwhile"
+            raise RunError("file-exists", what, "export again, to a folder that does not exist") from None
         what = f"'{target}' cannot be written: {error.strerror or error}"
         raise RunError(code_of(error), what, "check permissions and the space left, or name another file") from None
     return ExportResult(

@@ -15,7 +15,7 @@ from irsim.common.text import clean
 from irsim.results.benchmark import CROWDED, seeds_of
 from irsim.runs.store import RESULT
 from irsim_mcp.answers import failure
-from irsim_mcp.jobs import PARTIAL
+from irsim_mcp.jobs import PARTIAL, readable
 from irsim_mcp.limits import (
     MAX_BEHAVIORS,
     MAX_EPISODES,
@@ -214,8 +214,13 @@ def answer(state: dict[str, Any], detailed: bool = False) -> CallToolResult:
         detailed: With more metrics, and how the robots failed.
 
     Raises:
-        ToolError: The job failed.
+        ToolError: The job failed, or others have changed its files.
     """
+    with readable(state["id"]):
+        return _answer(state, detailed)
+
+
+def _answer(state: dict[str, Any], detailed: bool) -> CallToolResult:
     if "error" in state:
         raise as_failure(state["error"], None)
     report = Benchmark(

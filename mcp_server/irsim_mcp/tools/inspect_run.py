@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
 from irsim.common.text import clean
 from irsim_mcp.answers import failure
+from irsim_mcp.jobs import readable
 from irsim_mcp.services import RunId, Services
 from irsim_mcp.suites import check_finished, episodes_table
 from irsim_mcp.tool import StrictTool, strict
@@ -110,7 +111,8 @@ def _episodes(job: dict[str, Any], other: list[str], limit: int, cursor: str | N
         fix = "leave it out; run_episode with the seed of an episode gives a run to look into"
         raise failure("bad-argument", what, where=other[0], fix=fix)
     check_finished(job)
-    return episodes_table(job, limit, cursor)
+    with readable(job["id"]):
+        return episodes_table(job, limit, cursor)
 
 
 def _first_rows(data: dict[str, Any], cursor: str | None, most_characters: int) -> dict[str, Any]:
