@@ -129,7 +129,7 @@ def render(
 
 
 def show_part(env: Env, size: int | None, region: Sequence[float] | None) -> None:
-    """Set the size of a picture [px] and the part that it shows; None for those of the scenario."""
+    """Set the size of a picture [px] and the part that it shows; None keeps what the scenario says."""
     if region is not None:
         env._env_plot.set_region(region)
     if size is not None:

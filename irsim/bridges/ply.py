@@ -95,7 +95,7 @@ def read_header(path: Path, fix: str) -> Header:
 
     Args:
         path: The file.
-        fix: What to give in its place, for messages.
+        fix: Advice in messages: the file to give in its place.
 
     Raises:
         BridgeError: The file cannot be read or is not a PLY file; the message has the line.

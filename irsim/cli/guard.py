@@ -142,7 +142,7 @@ def _describe(error: BaseException) -> tuple[str, str, int]:
 
 
 def _said(error: MemoryError) -> str:
-    """What an error of the core says, as the end of a sentence; most errors of this kind say nothing that helps."""
+    """The text of an error of the core, as the end of a sentence; most errors of this kind say nothing that helps."""
     return f": {error}" if str(error).startswith("more than") else ""
 
 

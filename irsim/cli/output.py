@@ -37,7 +37,7 @@ _LINE_PERIOD_S = 30.0
 def prepare_streams() -> None:
     """Make printing safe: characters that the encoding of the terminal lacks, or that mislead readers, are escaped.
 
-    What is printed to a closed stream is lost, as in a service without a terminal.
+    A closed stream loses the text that is printed to it, as in a service without a terminal.
     """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:

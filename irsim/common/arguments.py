@@ -42,7 +42,7 @@ def check_whole_number(name: str, value: Any, least: int = 0) -> int:
 
 
 def check_positive(**values: float | None) -> None:
-    """Refuse arguments that are no positive numbers of a size that occurs; None stands for a default.
+    """Refuse arguments other than positive numbers of a size that occurs; None stands for a default.
 
     Raises:
         InputError: A value is less than 1e-6, greater than 1e9 or not a number.

@@ -162,7 +162,7 @@ def write_atomically(target: Path, text: str) -> None:
 
 
 def is_stream(target: str | Path) -> bool:
-    """Whether a name is that of a device, pipe or socket, such as ``/dev/null``, which no file may replace."""
+    """Whether a name belongs to a device, pipe or socket, such as ``/dev/null``, which no file may replace."""
     try:
         mode = os.stat(target).st_mode
     except OSError:
@@ -171,7 +171,7 @@ def is_stream(target: str | Path) -> bool:
 
 
 def _write_stream(target: str | Path, *parts: Buffer) -> None:
-    """Write to a device or a pipe; a pipe that nobody reads is waited for."""
+    """Write to a device or a pipe; it waits until a pipe has a reader."""
     descriptor = os.open(target, os.O_WRONLY)
     try:
         write_all(descriptor, *parts)

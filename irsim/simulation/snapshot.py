@@ -61,7 +61,7 @@ def load_simulation(simulation: Simulation, data: bytes) -> None:
 
 
 def _scenario(simulation: Simulation) -> str:
-    """What tells scenarios apart, as they are written."""
+    """A digest that tells scenarios apart, as they are written."""
     return digest(repr(simulation.scenario.document))
 
 

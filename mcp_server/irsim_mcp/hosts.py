@@ -18,7 +18,7 @@ _AUTHORITY = re.compile(rf"(\[[0-9A-Fa-f:.]+(?:{_ZONE})?\]|{_LABELS})(?::[0-9]{{
 _ORIGIN = re.compile(rf"https?://({_AUTHORITY.pattern})", re.IGNORECASE)
 _NUMBERS = re.compile(r"[0-9][0-9a-fx.]*")
 _NUMBER_LAST = re.compile(r"(.*\.)?([0-9]+|0x[0-9a-f]*)")
-"""What only an address may look like."""
+"""The look that only an address may have."""
 
 
 class HttpRefused(ValueError):

@@ -138,7 +138,7 @@ def test_pipes_and_devices_are_written_to_and_stay(name: str, tmp_path: Path) ->
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a pipe of POSIX")
 def test_records_take_the_place_of_a_pipe(tmp_path: Path) -> None:
-    """The file of a run has one name, and a pipe of that name, which somebody has put there, stops no writer."""
+    """The file of a run has one name, and a pipe of that name, which another program has put there, stops no writer."""
     os.mkfifo(tmp_path / "run.json")
     replace_bytes(tmp_path / "run.json", b"{}")
     assert (tmp_path / "run.json").read_bytes() == b"{}"

@@ -45,7 +45,7 @@ REFUSED = {
         for name in ("animCycle", "camera", "layoutOverrides")
     },
 }
-"""What the message says about a file that is read, but shows no place to drive on."""
+"""The words of the message about a file that is read, but shows no place to drive on."""
 PARTS = {"ros-maps/tb3_sandbox.pgm": "ros-maps/tb3_sandbox.yaml", "ros-maps/depot.pgm": "ros-maps/depot.yaml"}
 """Files that another one names."""
 PEDESTRIANS = [

@@ -30,7 +30,7 @@ def test_one_idea_has_one_home(find: Callable[[], list[str]], most: int) -> None
 
 
 def test_markers_choose_the_tests_of_a_session() -> None:
-    """Only the tests under sanitizers are those of a folder."""
+    """Only the tests under sanitizers are the tests of a folder."""
     assert re.findall(r"tests/[\w/.]+", (house.ROOT / "noxfile.py").read_text(encoding="utf-8")) == ["tests/core"]
 
 

@@ -118,7 +118,7 @@ def test_the_rooms_are_those_of_the_guide() -> None:
 
 
 def test_tests_mirror_the_rooms() -> None:
-    """Each room has a folder of tests; other folders are those of the sets above."""
+    """Each room has a folder of tests; other folders are named in the sets above."""
     folders = {path.name: {*path.rglob("test_*.py")} for path in (ROOT / "tests").iterdir() if any(path.rglob("*.py"))}
     rooms = {name for name in listed_rooms() if (ROOT / "irsim" / name).is_dir()}
     assert {name for name, tests in folders.items() if tests} == rooms | BESIDE_ROOMS
@@ -226,7 +226,7 @@ with tempfile.TemporaryDirectory() as folder:
 
 
 def test_tests_import_only_helpers_that_are_there() -> None:
-    """Whoever moves or renames a helper of tests looks for those who import it."""
+    """A change that moves or renames a helper of tests looks for those who import it."""
     missing = [
         f"{path.relative_to(ROOT)}: {name}"
         for path in (ROOT / "tests").rglob("*.py")

@@ -39,7 +39,7 @@ def with_root(fix: str, folder: Path, file: Path) -> str:
     """Advice about a file that lies elsewhere, which begins with ``--root`` unless only a whole disk contains both.
 
     Args:
-        fix: What helps as well.
+        fix: Another fix.
         folder: The folder of the file that names it.
         file: The file.
     """

@@ -119,7 +119,7 @@ def find_number(path: Path, parent: ET.Element, name: str, default: float | None
 
 @dataclass(kw_only=True)
 class Collection:
-    """What an import collects of the world of another simulator.
+    """The things that an import collects of the world of another simulator.
 
     Attributes:
         path: The file.

@@ -53,7 +53,7 @@ def same_data(a: Any, b: Any, *, near: float = 0.0) -> bool:
     Args:
         a: Data.
         b: Data.
-        near: Difference up to which numbers count as equal, besides that of rounding.
+        near: Difference up to which numbers count as equal, beside the difference of rounding.
     """
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         return set(a) == set(b) and all(same_data(a[key], b[key], near=near) for key in a)

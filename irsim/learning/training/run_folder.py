@@ -127,7 +127,7 @@ class RunFolder:
         Args:
             kind: Their class.
             given: Settings of a training that begins; None for the usual ones.
-            steps: Another number of steps; None for that of the settings.
+            steps: Another number of steps; None keeps the number of the settings.
             resume: Go on with the training in the folder, which no other program may do at the same time.
 
         Raises:

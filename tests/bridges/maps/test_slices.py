@@ -47,7 +47,7 @@ def test_surfaces_that_look_the_wrong_way_or_both_ways() -> None:
 
 
 def test_prisms_that_stand_upright() -> None:
-    """Many boxes and a ring of one height, which is empty above itself; other solids are no prisms."""
+    """Many boxes and a ring of one height, which is empty above itself; other solids are not prisms."""
     cells = np.concatenate([box([i, 0.3 * i, 0], [i + 1, 0.3 * i + 1, 2]) for i in range(40)])
     assert slice_of_prisms(cells, 0.2, 1.5)[1].area == pytest.approx(40)
     assert slice_of_prisms(cells, 2.1, 3) == (True, None)

@@ -27,7 +27,7 @@ UNREAD = f"{MARKS}unread-clip"
 _ADDRESS = re.compile(r"\Aurl\(\s*['\"]?#([^'\")]+)['\"]?\s*\)")
 _CONTAINERS = ("svg", "g", "symbol")
 _MAX_COPIES = 200_000
-"""Shapes of clip paths after those of each element are inserted."""
+"""Number of shapes when each element has a copy of the shapes of its clip path."""
 
 
 def insert_clips(path: Path, root: ET.Element, clips: dict[str, ET.Element]) -> list[str]:
@@ -53,10 +53,10 @@ def insert_clips(path: Path, root: ET.Element, clips: dict[str, ET.Element]) -> 
             element.set(UNREAD, "mask")
         if value in ("", "none"):
             continue
-        found = _ADDRESS.match(value)
-        if found and found[1] not in clips:
+        address = _ADDRESS.match(value)
+        if address and address[1] not in clips:
             continue  # as in a browser
-        clip = clips[found[1]] if found else None
+        clip = clips[address[1]] if address else None
         if clip is None or not _is_readable(clip) or (element not in parents and element.tag not in _CONTAINERS):
             element.set(UNREAD, "clip-path")
             continue

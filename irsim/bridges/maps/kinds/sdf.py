@@ -35,7 +35,7 @@ _HARMLESS = ("sun", "ground_plane")
 
 @dataclass(kw_only=True)
 class _World(Collection):
-    """A world, and what is collected of it; ``models`` counts those that it includes."""
+    """A world, and what is collected of it; ``models`` is the number of models that it includes."""
 
     models: int = 0
 

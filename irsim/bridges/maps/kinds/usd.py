@@ -26,7 +26,7 @@ __all__ = ["KIND"]
 _MAX_FILES = 10_000
 """Files in a ``.usdz``."""
 _MAX_OUTLINED = 10_000
-"""Triangles of a stage of irsim that are no upright prisms, up to which outlines are made in seconds; a larger one is
+"""Triangles of a stage of irsim beside its upright prisms, up to which outlines are made in seconds; a larger stage is
 read as meshes."""
 _LISTED = 5
 """Names that a note lists."""
