@@ -8,7 +8,7 @@ from typing import Any, TypeGuard
 from irsim.common.text import clean
 from irsim.diagnostics.errors import InputError
 
-__all__ = ["as_given", "check_positive", "check_whole_number", "is_number", "is_whole_number"]
+__all__ = ["as_given", "check_positive", "check_steps", "check_whole_number", "is_number", "is_whole_number"]
 
 
 def is_number(value: Any) -> TypeGuard[int | float]:
@@ -39,6 +39,15 @@ def check_whole_number(name: str, value: Any, least: int = 0) -> int:
     if not is_whole_number(value) or value < least:
         raise InputError(f"{name} cannot be {as_given(value)}", f"give a whole number, {least} or more")
     return int(value)
+
+
+def check_steps(value: Any) -> int:
+    """The number of periods to advance, at most the largest that the core counts.
+
+    Raises:
+        InputError: The value is not a whole number, or negative.
+    """
+    return min(check_whole_number("steps", value), 2**63 - 1)
 
 
 def check_positive(**values: float | None) -> None:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.arguments import check_whole_number
+from irsim.common.arguments import check_steps, check_whole_number
 from irsim.common.arrays import Floats
 from irsim.compat.objects.view import make_view
 from irsim.diagnostics.errors import InputError
@@ -178,8 +178,11 @@ class Batch:
 
         Returns:
             Largest number of periods that any world executed.
+
+        Raises:
+            InputError: ``steps`` is not a whole number from 0 on.
         """
-        return self._simulation.advance(steps, until_done=until_done)
+        return self._simulation.advance(check_steps(steps), until_done=until_done)
 
     def reset(self, mask: Any = None, *, random: bool | None = None) -> None:
         """Start new episodes.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
+from irsim.common.arguments import check_steps
 from irsim.common.log import LEVELS
 from irsim.env.live import drive_by_keyboard
 from irsim.env.queries import get_object_by_name
@@ -121,7 +122,11 @@ def advance(env: EnvState, steps: int, *, until_done: bool = True, recorder: Epi
 
     Returns:
         Number of executed periods.
+
+    Raises:
+        InputError: ``steps`` is not a whole number from 0 on.
     """
+    steps = check_steps(steps)
     env._ended = False
     if env.world_param.step_mode == "external":
         done = _wait(env, steps, until_done, recorder)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from irsim.common.arguments import as_given
 from irsim.objects.base import SimObject
 
 __all__ = ["assign_actions"]
@@ -64,8 +65,8 @@ def _checked_control(view: SimObject, action: Any) -> list[float]:
     """Convert an action of any type."""
     try:
         values = np.asarray(action, dtype=np.float64).reshape(-1)
-    except (TypeError, ValueError):
-        raise ValueError(f"an action is numbers, not {action!r}") from None
+    except (OverflowError, TypeError, ValueError):
+        raise ValueError(f"an action is numbers, not {as_given(action)}") from None
     if values.size != view.vel_dim:
         kind = view.kinematics or "static"
         raise ValueError(f"{view.name!r} ({kind}) takes {view.vel_dim} numbers per action, got {values.size}")

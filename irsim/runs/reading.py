@@ -40,6 +40,7 @@ class _Meta(BaseModel):
     sensors: list[tuple[Name, Annotated[int, Field(strict=True, gt=0, le=10**7)]]]
     step_time: Annotated[float, Field(strict=True, gt=0, le=1e9, allow_inf_nan=False)]
     seed: Annotated[int, Field(strict=True, ge=0, lt=2**128)]
+    id: Name = ""
     created: Name = ""
     scenario: Name | None = None
     folder: Name | None = None
@@ -114,8 +115,8 @@ class Run:
     def scenario_text(self) -> str:
         """The scenario as the user wrote it."""
         text = text_of(self.folder, "scenario.yaml")
-        if text is None:
-            raise unreadable(f"run {self.id} has no scenario.yaml")
+        if text is None or not text.strip():
+            raise unreadable(f"run {self.id} has no scenario.yaml, or an empty one")
         return text
 
     @cached_property
@@ -179,7 +180,7 @@ class Run:
         """
         pieces = [self._piece(name) for name in self._pieces("trace")]
         if not pieces:
-            raise self._no_steps()
+            raise self.no_steps()
         trace = join_traces(pieces)
         if (np.diff(trace.step) != 1).any():
             raise unreadable(f"the pieces of run {self.id} do not follow each other: they have been changed")
@@ -212,9 +213,12 @@ class Run:
         if parts:
             yield join_traces(parts)
         elif following is None:
-            raise self._no_steps()
+            raise self.no_steps()
 
-    def _no_steps(self) -> RunError:
+    def no_steps(self) -> RunError:
+        """The error of a run without a trace."""
+        if self.status == "finished":
+            return unreadable(f"the trace of run {self.id} is missing")
         return unreadable(f"run {self.id} was interrupted before its first step was recorded")
 
     def files(self) -> list[str]:
@@ -266,6 +270,8 @@ def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> R
     """
     folder = find_run(folder_or_id, workspace)
     meta = json_of(folder, META)
+    if not isinstance(meta, dict):
+        raise unreadable(f"run.json of run {folder.name} has been changed: it is not a mapping")
     try:
         _Meta.model_validate(meta)
     except ValidationError as error:

@@ -122,9 +122,11 @@ def step_of(run: Run, step: int | None) -> int:
     """The number of a step, checked; None or -1 is the last step of the run.
 
     Raises:
-        RunError: There is no such step.
+        RunError: There is no such step, or no trace.
     """
     last = run.last_step
+    if last < 0:
+        raise run.no_steps()
     wanted = last if step is None or step == -1 else step
     if not 0 <= wanted <= last:
         raise RunError("step-out-of-range", f"run {run.id} has no step {wanted}", run.extent, where="step")

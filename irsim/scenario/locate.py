@@ -11,7 +11,8 @@ import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 
-from irsim.diagnostics.errors import ScenarioNotFoundError
+from irsim.common.arguments import as_given
+from irsim.diagnostics.errors import InputError, ScenarioNotFoundError
 
 __all__ = ["BUNDLED", "default_name", "image_places", "locate", "why_outside"]
 
@@ -37,8 +38,11 @@ def locate(name: str | os.PathLike[str] | None = None) -> str:
     Raises:
         ScenarioNotFoundError: None of them exists; the message lists the places searched, files with similar
             names, and the template of that name.
+        InputError: ``name`` is not a path.
     """
-    wanted = os.fspath(name) if name is not None else default_name()
+    if name is not None and not isinstance(name, (str, bytes, os.PathLike)):
+        raise InputError(f"a scenario is named by its file, not by {as_given(name)}", "give the path of a YAML file")
+    wanted = os.fsdecode(name) if name is not None else default_name()
     places = _places()
     candidates = [os.path.expanduser(wanted)] + [os.path.join(place, wanted) for place in places]
     for candidate in candidates:

@@ -292,3 +292,29 @@ def test_surplus_actions_are_a_warning_and_an_error_if_strict(make: Make, capsys
     assert "2 actions for 1 object(s)" in capsys.readouterr().out
     with pytest.raises(ValueError, match=r"2 actions for 1 object\(s\)"):
         make(ONE, strict=True).step(actions)
+
+
+@pytest.mark.parametrize("steps", [1.5, math.nan, "a", None, -1, True])
+def test_steps_to_advance_are_a_whole_number(make: Make, steps: Any) -> None:
+    env = make(ONE)
+    with pytest.raises(ValueError, match="steps cannot be .* give a whole number, 0 or more"):
+        env.advance(steps)
+    assert env.time == 0
+
+
+def test_more_steps_than_the_core_counts_end_when_all_have_arrived(make: Make) -> None:
+    env = make(ONE)
+    assert 10 < env.advance(10**30) < 100
+
+
+def test_numbers_beyond_float_are_no_action(make: Make) -> None:
+    with pytest.raises(ValueError, match="an action is numbers, not") as raised:
+        make(ONE).step([10**400, 0])
+    assert len(str(raised.value)) < 120
+
+
+def test_scenarios_are_named_by_paths(tmp_path: Path) -> None:
+    (tmp_path / "one.yaml").write_text(ONE)
+    assert irsim.make(str(tmp_path / "one.yaml").encode(), headless=True).time == 0
+    with pytest.raises(ValueError, match=r"named by its file, not by \{'world'.*give the path of a YAML file"):
+        irsim.make({"world": {}})  # type: ignore[arg-type]

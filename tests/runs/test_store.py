@@ -20,6 +20,7 @@ import pytest
 import irsim
 from irsim.runs import RunError, list_runs, open_run
 from irsim.runs.files import claim, replace_file
+from irsim.runs.resimulation import resimulate
 from irsim.runs.store import META, find_run, make_run_folder, mark_cancelled, prune, runs_folder, status_of, tidy
 from tests.runs.conftest import ROOM, recorded
 
@@ -206,6 +207,26 @@ def test_changed_files_are_told(room: Path, name: str) -> None:
     path.write_bytes(content)
     open_run(run_id).trace()
     list_runs()
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("trace-0000.npz", None, "the trace of run .* is missing"),
+        ("scenario.yaml", " \n", "has no scenario.yaml, or an empty one"),
+        ("run.json", "[]", "it is not a mapping"),
+        ("run.json", {"id": 10**30}, "see its key 'id'"),
+    ],
+)
+def test_what_a_run_lacks_is_said(room: Path, name: str, text: Any, message: str) -> None:
+    run_id = recorded(room).id
+    path = runs_folder() / run_id / name
+    if text is None:
+        path.unlink()
+    else:
+        path.write_text(text if isinstance(text, str) else json.dumps({**json.loads(path.read_text()), **text}))
+    with pytest.raises(RunError, match=f"unreadable-run: .*{message}"):
+        resimulate(open_run(run_id)).end()
 
 
 def read_all(run_id: str) -> None:
