@@ -42,7 +42,8 @@ def outlines_within(outlines: Outlines, bounds: tuple[float, float, float, float
         things = [thing for thing in inside if thing.region.area > 0]
     if not things and outlines.free is None:
         where = "within the bounds" if bounds is not None else "between --climb and --headroom above the floor"
-        raise BridgeError("bridge-file", f"the scene is not usable: nothing stands {where}", "check them, and --height")
+        what = "; ".join([f"the scene is not usable: nothing stands {where}", *outlines.notes])
+        raise BridgeError("bridge-file", what, "check them, and --height")
     return things
 
 

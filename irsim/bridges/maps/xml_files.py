@@ -100,7 +100,7 @@ def find_numbers(path: Path, element: ET.Element | None, count: int, default: tu
         values = [float("nan")]
     if (count and len(values) != count) or any(not abs(value) <= 1e9 for value in values):
         name = "an element" if element is None else f"<{element.tag}>"
-        what = f"{name} is '{text[:60]}', and must be {count or 'some'} number{'s' if count != 1 else ''}"
+        what = f"{name} is '{text[:60]}', and must be {count or 'some'} number{'s' if count != 1 else ''} up to 1e9"
         raise unusable(path, what)
     return values
 
@@ -144,7 +144,7 @@ class Collection:
 
     def leave(self, why: str, name: str) -> None:
         """Note that something is left out."""
-        self.left.setdefault(why, []).append(clean(name, 80))
+        self.left.setdefault(why, []).append(clean(name, 80) or "without a name")
 
     def add(self, name: str, region: Any, place: Floats, radius: float | None) -> None:
         """Collect an outline.

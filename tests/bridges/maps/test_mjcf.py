@@ -132,6 +132,10 @@ def test_files_below_the_root_are_included(tmp_path) -> None:
         ('<geom size="x"/>', "must be some numbers"),
         ('<geom size="1" euler="0 0"/>', "must be 3 numbers"),
         ('<geom type="plane"/>', "nothing stands"),
+        (
+            '<replicate count="3"><geom type="box" size="1 1 1"/></replicate>',
+            "nothing stands .*left out: 1 element .without a name.: <replicate> is not read",
+        ),
     ],
 )
 def test_wrong_files_are_refused(world, message) -> None:
