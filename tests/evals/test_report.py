@@ -19,7 +19,7 @@ from irsim_evals.grader.grade import grade
 from irsim_evals.grader.outcome import NOT_REACHED, Cost, Mark, Outcome
 from irsim_evals.report.content import content_of
 from irsim_evals.report.drawing import draw_answer
-from irsim_evals.report.html_text import code, difference, lines_of, prose
+from irsim_evals.report.html_text import code, difference, lines_of, number, prose
 from irsim_evals.report.load import Asked, asked_of
 from irsim_evals.report.marked_picture import NumberedMark, marked_picture
 from irsim_evals.report.page import page
@@ -60,6 +60,10 @@ class Elements(HTMLParser):
     def handle_data(self, data: str) -> None:
         if self.names and self.names[-1] not in ("script", "style"):
             self.words += data
+
+
+def test_numbers_of_damaged_results_may_be_of_any_size() -> None:
+    assert [number(value) for value in (0.1234, 1234.5, 10**400)] == ["0.123", "1,234", "1.00e+400"]
 
 
 def test_report_writes_three_files(tmp_path: Path) -> None:

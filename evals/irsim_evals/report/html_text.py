@@ -7,6 +7,7 @@ import html
 import math
 import re
 from collections.abc import Collection
+from decimal import Decimal
 
 from irsim.common.text import clean
 from irsim.common.yaml.nodes import Node
@@ -115,6 +116,8 @@ def _last_line(node: Node | None, path: tuple[str | int, ...], first: int) -> in
 
 def number(value: float) -> str:
     """A number with at most three digits after a small part, and thousands kept together."""
+    if abs(value) >= 1e15:
+        return f"{Decimal(value):.3g}"  # a damaged file may hold a number beyond those of float
     return f"{value:,.0f}" if abs(value) >= 100 else f"{value:.3g}"
 
 

@@ -135,6 +135,12 @@ def test_metadata_beyond_all_bags_are_refused_at_once(bag: Path) -> None:
         metadata.write_text(text)
 
 
+def test_poses_that_span_years_are_refused_at_once() -> None:
+    write_odometry([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)], 1.0, 0, 10**17)
+    with pytest.raises(BridgeError, match=r"its poses span 1e\+08 s, which is more than 10,000,000 steps"):
+        import_bag("b", "s.yaml")
+
+
 def test_odometry_that_is_not_finite_is_left_out() -> None:
     poses = [(math.nan if step == 7 else 0.1 * step, 0.0, 0.0) for step in range(30)]
     write_odometry(poses, 1.0, 100_000_000, 100_000_000)

@@ -34,6 +34,8 @@ def _may_be_mesh(head: bytes) -> bool:
 
 
 _FRAMES = {"y": "habitat_yup", "z": "irsim", "-y": "colmap"}
+_FARTHEST = 1e12
+"""Largest coordinate of a corner, in the unit of the file."""
 _STEEP = 1.5
 """How much more area must face along another axis before a note says so."""
 
@@ -92,11 +94,10 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> SceneTrian
 def _checked(path: Path, triangles: Triangles) -> Triangles:
     if not len(triangles):
         raise unusable(path, "it has no triangles", "export the scene with its meshes")
-    wrong = ~np.isfinite(triangles).all(axis=(1, 2))
+    wrong = ~(np.abs(triangles) <= _FARTHEST).all(axis=(1, 2))
     if wrong.any():
-        raise unusable(
-            path, f"{int(wrong.sum()):,} of its {len(triangles):,} triangles have corners that are not numbers"
-        )
+        what = f"{int(wrong.sum()):,} of its {len(triangles):,} triangles have corners"
+        raise unusable(path, f"{what} that are not numbers of at most {_FARTHEST:g}")
     return triangles
 
 

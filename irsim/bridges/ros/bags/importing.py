@@ -170,6 +170,8 @@ def _clear(levels: NDArray[np.int8], path: Floats, low: Floats, resolution: floa
 
 _MAX_MAPPED = 3000
 """Scans of which the map is made; of more, some at equal distances."""
+_MAX_STEPS = 10_000_000
+"""Steps that an imported run may take."""
 _EVENTS_PER_ROW = 6
 """Events of YAML of one recorded pose."""
 
@@ -244,6 +246,9 @@ def import_bag(
     times, poses = result.times[rows] - result.times[rows[0]], result.poses[rows]
     if len(times) * _EVENTS_PER_ROW > DEFAULT_LIMITS.events:
         raise BridgeError("bridge-file", f"{len(times)} poses are more than a scenario may hold", "--from and --to")
+    if times[-1] > _MAX_STEPS * options.step_time:
+        what = f"its poses span {times[-1]:.4g} s, which is more than {_MAX_STEPS:,} steps of {options.step_time:g} s"
+        raise BridgeError("bridge-file", what, "choose a part with --from and --to, or longer steps with --step-time")
     notes = [f"{result.ignored} messages were not usable and left out"] if result.ignored else []
     mount = options.mount or result.mount
     if mount is None and result.scans:
