@@ -314,6 +314,7 @@ def set_aside(target: Path) -> Iterator[None]:
     except BaseException:
         with suppress(OSError):  # another call has written one meanwhile
             aside.rename(target)
+        if os.path.lexists(target):
+            shutil.rmtree(aside, ignore_errors=True)
         raise
-    finally:
-        shutil.rmtree(aside, ignore_errors=True)
+    shutil.rmtree(aside, ignore_errors=True)
