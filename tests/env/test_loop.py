@@ -297,7 +297,7 @@ def test_surplus_actions_are_a_warning_and_an_error_if_strict(make: Make, capsys
 @pytest.mark.parametrize("steps", [1.5, math.nan, "a", None, -1, True])
 def test_steps_to_advance_are_a_whole_number(make: Make, steps: Any) -> None:
     env = make(ONE)
-    with pytest.raises(ValueError, match="steps cannot be .* give a whole number, 0 or more"):
+    with pytest.raises(ValueError, match=r"steps cannot be .* give a whole number, 0 or more"):
         env.advance(steps)
     assert env.time == 0
 

@@ -117,7 +117,7 @@ def _last_line(node: Node | None, path: tuple[str | int, ...], first: int) -> in
 def number(value: float) -> str:
     """A number with at most three digits after a small part, and thousands kept together."""
     if abs(value) >= 1e15:
-        return f"{Decimal(value):.3g}"  # a damaged file may hold a number beyond those of float
+        return f"{Decimal(value):.3g}"  # a damaged file may hold a number that no float can be
     return f"{value:,.0f}" if abs(value) >= 100 else f"{value:.3g}"
 
 
