@@ -1,4 +1,7 @@
-"""A simulation as bytes, from which an equal simulation goes on bit for bit."""
+"""A simulation as bytes, from which an equal simulation goes on bit for bit.
+
+The bytes begin with a digest of the rest: the core would believe damaged numbers, and read where nothing is.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +20,8 @@ __all__ = ["dump", "load", "load_simulation", "save_simulation"]
 
 _PARTS = "parts"
 _OWNER = "worlds"
+_DIGEST = len(digest())
+"""Length of the digest [bytes]."""
 
 
 def save_simulation(simulation: Simulation) -> bytes:
@@ -100,7 +105,8 @@ def dump(value: Any, simulation: Simulation, owner: str) -> bytes:
     except (AttributeError, TypeError, pickle.PicklingError) as error:
         what = f"the memory of code in Python cannot be saved: {error}"
         raise InputError(what, "keep in behaviors, policies and sensors only what pickle can store") from error
-    return out.getvalue()
+    content = out.getvalue()
+    return digest(content).encode() + content
 
 
 def load(data: bytes, simulation: Simulation, owner: str) -> Any:
@@ -111,7 +117,10 @@ def load(data: bytes, simulation: Simulation, owner: str) -> Any:
     """
     fix = "give what snapshot() has returned"
     try:
-        kind, value = _Unpickler(io.BytesIO(data), simulation).load()
+        content = data[_DIGEST:]
+        if digest(content).encode() != data[:_DIGEST]:
+            raise InputError("the snapshot is damaged", fix)
+        kind, value = _Unpickler(io.BytesIO(content), simulation).load()
     except InputError:
         raise
     except Exception as error:  # damaged pickles raise errors of many types

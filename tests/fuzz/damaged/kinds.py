@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import random
 import shutil
 from collections.abc import Callable, Mapping
@@ -194,6 +195,24 @@ def _sidecar(folder: Path) -> Path:
     return folder / "scene.bridge.json"
 
 
+def _snapshot(folder: Path) -> Path:
+    """A snapshot of an environment with noise, in the folder of its scenario."""
+    (folder / "room.yaml").write_text(ROOM, encoding="utf-8")
+    (folder / "snapshot").write_bytes(_taken(folder / "room.yaml").snapshot())
+    return folder / "snapshot"
+
+
+@functools.cache
+def _taken(scenario: Path) -> irsim.Env:
+    return irsim.make(scenario, seed=1, display=False)
+
+
+def _restore(file: Path, draw: random.Random) -> None:
+    env, content = _taken(file.with_name("room.yaml")), file.read_bytes() if file.is_file() else b""
+    env.restore(content)
+    env.step()
+
+
 def _read_words(file: Path, draw: random.Random) -> None:
     word = "rate=" + (file.read_bytes() if file.is_file() else b"").decode("latin-1")
     parse_options([word])
@@ -245,6 +264,7 @@ KINDS: Mapping[str, Kind] = {
                      _read_feedback),
     **PLACES,
     **VERDICTS,
+    "snapshot": Kind(_snapshot, _restore),
     "calls": Kind(text("calls.jsonl", '{"tool": "run_episode", "error": false, "tokens": 12}\n' * 2),
                   lambda file, draw: cost_of(file)),
     "obsmat": Kind(text("obsmat.txt", crowds.obsmat()), _read_pedestrians, share=2),
