@@ -47,8 +47,8 @@ def test_the_ground_of_a_stage_comes_back_and_what_moves_does_not() -> None:
     assert result.free_area == pytest.approx((result.columns * result.rows - result.occupied) * result.resolution**2)
     import_map("out.usda", "things.yaml", obstacles=True)
     entries = Path("things.yaml").read_text()
-    assert "shape: {name: circle, radius: 0.7}, state: [6.2, 3.0" in entries
-    assert "shape: {name: rectangle, length: 2.0, width: 0.8}, state: [3.0, 3.0, 0.4]}  # crate" in entries
+    assert "shape: {name: circle, radius: 0.7}, state: [6.2, 3, 0" in entries
+    assert "shape: {name: rectangle, length: 2, width: 0.8}, state: [3, 3, 0.4]}  # crate" in entries
     with pytest.raises(BridgeError, match="leave out --level"):
         import_map("out.usda", "level.yaml", level=0)
     Path("crate.usda").write_text('#usda 1.0\ndef Cube "crate"\n{\n    double size = 4\n}\n')
