@@ -126,7 +126,8 @@ def advance(env: EnvState, steps: int, *, until_done: bool = True, recorder: Epi
     Raises:
         InputError: ``steps`` is not a whole number from 0 on.
     """
-    steps = check_steps(steps)
+    if type(steps) is not int or not 0 <= steps < 2**63:
+        steps = check_steps(steps)
     env._ended = False
     if env.world_param.step_mode == "external":
         done = _wait(env, steps, until_done, recorder)

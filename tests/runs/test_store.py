@@ -221,10 +221,8 @@ def test_changed_files_are_told(room: Path, name: str) -> None:
 def test_what_a_run_lacks_is_said(room: Path, name: str, text: Any, message: str) -> None:
     run_id = recorded(room).id
     path = runs_folder() / run_id / name
-    if text is None:
-        path.unlink()
-    else:
-        path.write_text(text if isinstance(text, str) else json.dumps({**json.loads(path.read_text()), **text}))
+    changed = json.dumps({**json.loads(path.read_text()), **text}) if isinstance(text, dict) else text
+    path.unlink() if changed is None else path.write_text(changed)
     with pytest.raises(RunError, match=f"unreadable-run: .*{message}"):
         resimulate(open_run(run_id)).end()
 
