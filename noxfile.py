@@ -18,7 +18,7 @@
 - ``onnx``: policies from ONNX models, with onnxruntime.
 - ``nightly``: what is too large for every change, and therefore no part of ``full``: Blender reads what we write;
   another tenth of the bench of avoidance; more damaged files and races; all tests that rotate, of which ``slow`` runs
-  those of the day. ``neupan``: the examples of NeuPAN, where ``NEUPAN_SRC`` names a folder of it.
+  those of the day. ``neupan``: the examples of NeuPAN, where ``NEUPAN_SRC`` names a checkout of NeuPAN.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 Markers choose the tests of each part, so all parts but ``sanitize`` collect all tests, which takes about 10 s.

@@ -43,7 +43,7 @@ class Property:
     counts: str = ""
 
     def size(self, elements: int = 0) -> int:
-        """Number of bytes in a binary file; of a list with so many elements."""
+        """Number of bytes in a binary file; ``elements`` is the length of a list."""
         return int(self.counts[1]) + elements * int(self.code[1]) if self.counts else int(self.code[1])
 
 
@@ -67,7 +67,7 @@ class Element:
         return any(item.kind == "list" for item in self.properties)
 
     def row_bytes(self, elements: int = 0) -> int:
-        """Bytes of a row in a binary file whose lists have so many elements."""
+        """Bytes of a row in a binary file; ``elements`` is the length of each list."""
         return sum(item.size(elements) for item in self.properties)
 
 

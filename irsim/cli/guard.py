@@ -19,7 +19,7 @@ import typer
 from irsim.cli.output import print_error, silence_stdout
 from irsim.common.files import is_disk_full
 from irsim.common.text import clean
-from irsim.diagnostics.errors import IrsimError, ScenarioError, ScenarioNotFoundError
+from irsim.diagnostics.errors import IrsimError, ScenarioError, ScenarioNotFoundError, said_by_core
 
 __all__ = ["FAILED", "INTERRUPTED", "INVALID", "ended_in_order", "handle_errors"]
 
@@ -126,7 +126,7 @@ def _describe(error: BaseException) -> tuple[str, str, int]:
             return "invalid-input", text, INVALID
         return str(code), text.removeprefix(f"{code}: "), FAILED if code in _FAILURES else INVALID
     if isinstance(error, MemoryError):
-        return "out-of-memory", f"not enough memory{_said(error)}.", FAILED
+        return "out-of-memory", ": ".join(filter(None, ["not enough memory", said_by_core(error)])) + ".", FAILED
     if is_disk_full(error):
         where = f" ({clean(name, 200)})" if (name := getattr(error, "filename", None)) else ""
         return "disk-full", f"no space is left on the disk{where}. Free some, or write to another disk.", FAILED
@@ -139,11 +139,6 @@ def _describe(error: BaseException) -> tuple[str, str, int]:
         f"{type(error).__name__}: {error} ({frame}). Set IRSIM_TRACEBACK=1 to see the traceback.",
         FAILED,
     )
-
-
-def _said(error: MemoryError) -> str:
-    """The text of an error of the core, as the end of a sentence; most errors of this kind say nothing that helps."""
-    return f": {error}" if str(error).startswith("more than") else ""
 
 
 def _frame_of(error: BaseException) -> str:

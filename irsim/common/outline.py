@@ -173,7 +173,7 @@ def _part(state: core.State, row: int, part: int, kind: str, world_frame: bool) 
 
 
 def part_of(part: core.Part) -> BodyPart | None:
-    """A part of the core; None for a map, and for what is drawn anew for each scene."""
+    """A part of the core; None for a map, and for a part that differs from scene to scene."""
     if isinstance(part, core.Circle):
         x, y = part.center
         return Circle((x, y), part.radius)

@@ -177,7 +177,7 @@ def plural(count: int, noun: str) -> str:
 
 
 def decimal(value: float, digits: int) -> str:
-    """A number with at most so many digits behind the point, without an exponent: ``0.5``, ``12``."""
+    """A number with at most ``digits`` digits after the point, without an exponent: ``0.5``, ``12``."""
     text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 

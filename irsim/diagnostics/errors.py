@@ -24,6 +24,7 @@ __all__ = [
     "ScenarioError",
     "ScenarioNotFoundError",
     "WorkerError",
+    "said_by_core",
 ]
 
 
@@ -39,6 +40,11 @@ def _restore_error(kind: type[BaseException], args: tuple[Any, ...], attributes:
     error.args = args
     error.__dict__.update(attributes)
     return error
+
+
+def said_by_core(error: MemoryError) -> str:
+    """The limit of the core that was exceeded, as the end of a sentence; empty for other errors of memory."""
+    return str(error) if str(error).startswith("more than") else ""
 
 
 class IrsimError(PickledWhole, Exception):

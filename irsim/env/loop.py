@@ -126,6 +126,7 @@ def advance(env: EnvState, steps: int, *, until_done: bool = True, recorder: Epi
     Raises:
         InputError: ``steps`` is not a whole number from 0 on.
     """
+    # The usual case needs no call, as recorded runs advance in small pieces.
     if type(steps) is not int or not 0 <= steps < 2**63:
         steps = check_steps(steps)
     env._ended = False

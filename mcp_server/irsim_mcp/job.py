@@ -315,7 +315,7 @@ _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
 def _error_data(error: Exception) -> dict[str, Any]:
     """An exception as data."""
     from irsim.diagnostics.diagnostic import format_path
-    from irsim.diagnostics.errors import IrsimError, PlacementError, ScenarioError, ScenarioNotFoundError
+    from irsim.diagnostics.errors import IrsimError, PlacementError, ScenarioError, ScenarioNotFoundError, said_by_core
 
     if isinstance(error, PlacementError):
         first = error.diagnostics[0]
@@ -335,7 +335,7 @@ def _error_data(error: Exception) -> dict[str, Any]:
         where = getattr(error, "where", None)
         return {"code": code, "what": what, "fix": getattr(error, "fix", None), "where": where}
     if isinstance(error, MemoryError):
-        what = str(error) if str(error).startswith("more than") else "the work needs more memory than a worker may use"
+        what = said_by_core(error) or "the work needs more memory than a worker may use"
         return {"code": "out-of-memory", "what": what, "fix": "use fewer objects, lidar beams or steps"}
     if isinstance(error, OSError) and (name := _own_file(error)) is not None:
         what = f"{clean(name)!r} cannot be read or written: {error.strerror or error}"

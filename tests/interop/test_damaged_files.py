@@ -34,7 +34,7 @@ for _name in ("collada", "svgelements", "rosbags"):
 _WAYS = 60
 """Ways of each kind in the gate."""
 _APART = 6
-"""One of so many ways is tried where a process reads the file."""
+"""Where a process reads the file, one way in six is tried."""
 _ODOMETRY, _SCAN = "nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan"
 _READERS = tuple(f"irsim.bridges.maps.kinds._{kind}_process" for kind in ("dxf", "svg", "mesh"))
 _SVG = (

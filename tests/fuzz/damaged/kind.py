@@ -24,7 +24,7 @@ class Kind:
     Attributes:
         make: Writes an example into an empty folder and returns its file.
         read: Reads the file.
-        share: One of so many ways is tried, for kinds whose reading takes long.
+        share: One way in ``share`` is tried, for kinds whose reading takes long.
     """
 
     make: Make

@@ -47,7 +47,7 @@ class Clips:
     _used: set[str] = field(default_factory=set)
 
     def add(self, number: str, region: Any) -> None:
-        """Add a shape to a clip path; the first one after it was used begins it anew."""
+        """Add a shape to a clip path; after the path was used, the next shape starts another path."""
         if number in self._used:
             self._used.discard(number)
             self._regions.pop(number)
