@@ -6,7 +6,6 @@ A process that dies takes only the document along that killed it.
 from __future__ import annotations
 
 import os
-import signal
 import tempfile
 import time
 import traceback
@@ -32,8 +31,6 @@ How = Literal["run", "render", "benchmark"]
 
 _SECONDS = 10.0
 """Processor time of one document: twice what the worst ones take, because machines differ, and their days do, too."""
-_PATIENCE = 60.0
-"""Time on the clock of one document, on a machine that does other things as well."""
 _MEMORY = 1024**3
 """Address space of a process."""
 _STEPS = 3
@@ -70,7 +67,7 @@ def try_all(documents: Iterable[tuple[int, str]], *, workers: int = 2, how: How 
     tally, rest = Tally(), iter(documents)
     with tempfile.TemporaryDirectory() as folder:
         while batch := list(islice(rest, _RENEWED)):
-            results = run_all(_limited, [(text, folder, how) for _, text in batch], workers, _PATIENCE, "document")
+            results = run_all(_limited, [(text, folder, how) for _, text in batch], workers, _SECONDS, "document")
             for (index, text), result in zip(batch, results, strict=True):
                 came_to, wrong, seconds = ("died", str(result), 0.0) if isinstance(result, LimitError) else result
                 tally.came_to[came_to] += 1
@@ -85,10 +82,8 @@ def _limited(text: str, folder: str, how: How) -> tuple[str, str | None, float]:
     os.chdir(folder)
     limit(memory=_MEMORY)
     warnings.simplefilter("error")
-    signal.setitimer(signal.ITIMER_PROF, _SECONDS)  # no handler: the system ends the process, wherever it is
     begin = time.process_time()
     came_to, wrong = _attempt(text, scenario_limits(ServerLimits(), Path(folder)), how)
-    signal.setitimer(signal.ITIMER_PROF, 0.0)
     return came_to, wrong, time.process_time() - begin
 
 

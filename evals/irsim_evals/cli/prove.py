@@ -13,6 +13,7 @@ from irsim.cli.output import console, progress
 from irsim_evals.cli.cases import chosen
 from irsim_evals.proof.prove import Disagreement, Proof, as_case_rows, as_rows
 from irsim_evals.proof.prove import prove as run_proof
+from irsim_evals.proof.trials import Trial
 
 __all__ = ["prove"]
 
@@ -32,8 +33,8 @@ def prove(
 ) -> None:
     """Prove the grader: golds and their rewrites pass, mutants of pinned facts and null agents fail.
 
-    Exits with 1 if more than 1 % of the right answers are rejected, or of the wrong ones accepted, or
-    if the second implementation of the commonest predicates disagrees.
+    Exits with 1 if more than 1 % of the right answers are rejected, or of the wrong ones accepted, if a trial got no
+    verdict within its processor time, or if the second implementation of the commonest predicates disagrees.
     """
     begin = time.perf_counter()
     with progress("grading") as show:
@@ -47,6 +48,7 @@ def prove(
         ]  # fmt: skip
         report = {
             "rows": as_rows(proof), "cases": as_case_rows(proof), "wrong": wrong, "left_out": dict(proof.left_out),
+            "unjudged": [f"{_said_of(trial)}: {why}" for trial, why in proof.unjudged],
             "compared": dict(proof.compared),
             "disagreements": [_words_of(item) for item in proof.disagreements],
             "seconds": round(seconds, 1),
@@ -54,17 +56,23 @@ def prove(
         sys.stdout.write(json.dumps(report, ensure_ascii=False) + "\n")
     else:
         _show(proof, seconds, quick)
-    if proof.disagreements or any(wrong > _BAR * count for wrong, count in (proof.false_accepts, proof.false_rejects)):
+    if (
+        proof.unjudged
+        or proof.disagreements
+        or any(wrong > _BAR * count for wrong, count in (proof.false_accepts, proof.false_rejects))
+    ):
         raise typer.Exit(1)
+
+
+def _said_of(trial: Trial) -> str:
+    """A trial for people."""
+    return f"{trial.case}/{trial.gold} {trial.kind}, {trial.operator}: {trial.what}"
 
 
 def _words_of(item: Disagreement) -> str:
     """A disagreement for people."""
     trial, said = item.trial, "holds" if item.passed else "does not hold"
-    return (
-        f"{trial.case}/{trial.gold} {trial.kind}, {trial.operator}: {trial.what}: {item.assertion} ({item.predicate}) "
-        f"{said} for the grader only: {item.observed}"
-    )
+    return f"{_said_of(trial)}: {item.assertion} ({item.predicate}) {said} for the grader only: {item.observed}"
 
 
 def _show(proof: Proof, seconds: float, quick: bool) -> None:
@@ -74,9 +82,9 @@ def _show(proof: Proof, seconds: float, quick: bool) -> None:
     for trial, verdict in proof.wrong:
         why = "; ".join(f"{one.assertion}: {one.observed}" for one in verdict.failed()[:2])
         told = f"rejected: {why}" if trial.right else "accepted"
-        out.print(
-            f"WRONG {trial.case}/{trial.gold} {trial.kind}, {trial.operator}: {trial.what}: {told}", soft_wrap=True
-        )
+        out.print(f"WRONG {_said_of(trial)}: {told}", soft_wrap=True)
+    for trial, why in proof.unjudged:
+        out.print(f"NO VERDICT {_said_of(trial)}: {why}", soft_wrap=True)
     for name, (wrong, count) in (("false accepts", proof.false_accepts), ("false rejects", proof.false_rejects)):
         out.print(f"{name}: {wrong} of {count}" + (f" ({wrong / count:.2%})" if count else ""))
     for item in proof.disagreements:

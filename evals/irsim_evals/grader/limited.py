@@ -1,5 +1,8 @@
 """Grading in a process of its own with limits of memory, time and files: an answer is untrusted input.
 
+Time is processor time, so that a verdict does not depend on what else the machine does; the clock ends only what hangs,
+and everything where the system cannot count processor time.
+
 Processes are forked from a server that has imported the grader, so that each costs milliseconds. Where the system
 cannot fork, each is started anew.
 """
@@ -32,7 +35,9 @@ __all__ = [
 ]  # fmt: skip
 
 SECONDS = 60.0
-"""Time [s] after which the grading of one answer is ended."""
+"""Processor time [s] after which the grading of one answer is ended."""
+_PATIENCE = 10.0
+"""Time on the clock after which a job is ended, as a multiple of its processor time."""
 _PROGRAM_SECONDS = 300.0
 """The same where commands may run programs of the answer."""
 _MEMORY_BYTES = 6 * 1024**3
@@ -42,7 +47,7 @@ _FILE_BYTES = 64 * 1024**2
 
 
 class LimitError(RuntimeError):
-    """A limited process took too long, or ended without a result."""
+    """A limited process took too long, or ended without a result: nothing is known of what it would have returned."""
 
 
 def grade_answer(instance: Instance, answer: Answer, seconds: float = SECONDS) -> Verdict:
@@ -59,7 +64,7 @@ def run_limited(work: Callable[..., Any], arguments: tuple[Any, ...], seconds: f
     Args:
         work: Function of a module; what it takes and returns can be pickled.
         arguments: Its arguments.
-        seconds: Time after which the process is ended [s].
+        seconds: Processor time after which the process is ended [s].
         what: Its task in words, for the message.
 
     Raises:
@@ -159,12 +164,14 @@ class Worker:
         if self._process is None:
             self._start()
         try:
-            self._pipe.send((work, arguments))
-            if self._pipe.poll(seconds):
+            self._pipe.send((work, arguments, seconds))
+            if self._pipe.poll(_PATIENCE * seconds):
                 return self._pipe.recv()
-            why = f"the {what} took more than {seconds:g} s"
+            why = f"the {what} took more than {_PATIENCE * seconds:g} s on the clock"
         except (EOFError, OSError):
             why = f"the {what} process ended with {_exit(self._process)}"
+            if self._process.exitcode == -getattr(signal, "SIGPROF", 0):
+                why = f"the {what} took more than {seconds:g} s of processor time"
         self.close()
         raise LimitError(why)
 
@@ -212,8 +219,17 @@ def _do_jobs(there: Connection, cpu_seconds: int | None) -> None:
     _limit(cpu_seconds)
     with suppress(EOFError, BrokenPipeError):
         while True:
-            work, arguments = there.recv()
-            there.send(work(*arguments))
+            work, arguments, seconds = there.recv()
+            _allow(seconds)
+            result = work(*arguments)
+            _allow(0.0)
+            there.send(result)
+
+
+def _allow(seconds: float) -> None:
+    """Let the system end this process, wherever it is, after so much processor time from now on; 0: never."""
+    if hasattr(signal, "ITIMER_PROF"):
+        signal.setitimer(signal.ITIMER_PROF, seconds)  # nothing handles its signal
 
 
 def _grade(instance: Instance, answer: Answer) -> Any:

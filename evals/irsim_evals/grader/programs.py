@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -20,7 +21,11 @@ __all__ = [
 ]  # fmt: skip
 
 SECONDS = 40.0
-"""Time that one program gets."""
+"""Processor time that one program gets [s]."""
+_PATIENCE = 4.0
+"""Time on the clock after which it is ended, as a multiple of its processor time."""
+_OUT_OF_TIME = tuple(-int(getattr(signal, name)) for name in ("SIGKILL", "SIGXCPU") if hasattr(signal, name))
+"""Exit codes of a program that has used up its processor time."""
 _MAX_PRINTED = 200_000
 """Number of characters of the output that are kept."""
 _PROGRAMS = (".py", ".ipynb", ".sh", ".js", ".pl", ".rb", ".bat", ".ps1")
@@ -114,7 +119,7 @@ def run_program(folder: Path, name: str, seconds: float = SECONDS) -> Printed:
     Args:
         folder: Folder with the files of the answer.
         name: Path of the program in it.
-        seconds: Time after which it is ended.
+        seconds: Processor time after which it is ended [s].
     """
     return _run(folder, name, seconds, None)
 
@@ -126,7 +131,7 @@ def rehearse_program(folder: Path, name: str, seconds: float = SECONDS) -> Print
 
 
 def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
-    command = _command(name, *([str(log)] if log else []))
+    command = _command(name, str(seconds), *([str(log)] if log else []))
     environment = {"PATH": os.defpath, "MPLBACKEND": "Agg", "HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     with (folder / ".printed").open("wb") as output:
         process = subprocess.Popen(
@@ -134,7 +139,7 @@ def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
             start_new_session=True,
         )  # fmt: skip
         try:
-            code: int | None = process.wait(seconds)
+            code: int | None = process.wait(_PATIENCE * seconds)
         except subprocess.TimeoutExpired:
             code = None
         finally:
@@ -143,7 +148,7 @@ def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
     with (folder / ".printed").open("rb") as printed:
         text = printed.read(_MAX_PRINTED).decode("utf-8", errors="replace")
     episodes = read_log(log) if log else []
-    if code is None:
+    if code in (None, *_OUT_OF_TIME):
         return Printed(False, text, f"{name} did not end within {seconds:g} s", ended=False, episodes=episodes)
     if code != 0:
         lines = text.strip().splitlines()

@@ -1,6 +1,7 @@
 """Start one program of an answer in its folder, with what it needs to run scenarios and nothing else, or rehearse it.
 
-Run as ``python -I -m irsim_evals.grader.run_program PROGRAM [LOG]``, in the folder. With LOG the program is rehearsed:
+Run as ``python -I -m irsim_evals.grader.run_program PROGRAM SECONDS [LOG]``, in the folder; SECONDS is its processor
+time. With LOG the program is rehearsed:
 it simulates nothing, and the episodes that it starts are written to that file. In a rehearsal a step only counts, so
 every episode goes on to the horizon that the program has for it, and hundreds of episodes take seconds. A benchmark
 runs one episode, whose result stands for all.
@@ -12,14 +13,18 @@ from __future__ import annotations
 
 import atexit
 import json
+import math
 import os
 import runpy
 import sys
+import time
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from irsim.common.child import limit
 
 __all__ = ["Started", "read_log", "rehearse"]
 
@@ -163,7 +168,7 @@ def _limit(scenario: Any) -> int | None:
 
 def main() -> None:
     """Run the program that the first argument names."""
-    program, *log = sys.argv[1:]
+    program, seconds, *log = sys.argv[1:]
     folder = os.path.realpath(os.getcwd())
     import numpy  # noqa: F401  (libraries load their own parts before the hook watches)
 
@@ -171,6 +176,7 @@ def main() -> None:
     import irsim.benchmarks
     import irsim.env  # noqa: F401
 
+    limit(cpu=math.ceil(time.process_time() + float(seconds)))
     if log:
         rehearse(Path(log[0]).absolute())
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from irsim_evals.cases.store import case_ids
-from irsim_evals.grader.grade import failed_verdict, grade
+from irsim_evals.grader.grade import grade
 from irsim_evals.grader.limited import SECONDS, LimitError, run_all
 from irsim_evals.grader.outcome import NOT_REACHED, Verdict
 from irsim_evals.proof.oracle.opinions import opinions
@@ -48,6 +48,8 @@ class Proof:
     Attributes:
         done: (kind, operator) → number of trials, and of those graded wrongly.
         wrong: Trials that were graded wrongly, with their verdicts.
+        unjudged: Trials without a verdict, because the grading used up its time or its process died, with the reason.
+            They are neither accepted nor rejected.
         left_out: Mutants of facts that no case pins or leaves free: (operator) → number; mutants that cases waive
             are under ``waived``.
         by_case: (case, kind) → number of trials.
@@ -57,6 +59,7 @@ class Proof:
 
     done: Counter[tuple[str, str]] = field(default_factory=Counter)
     wrong: list[tuple[Trial, Verdict]] = field(default_factory=list)
+    unjudged: list[tuple[Trial, str]] = field(default_factory=list)
     left_out: Counter[str] = field(default_factory=Counter)
     by_case: Counter[tuple[str, str]] = field(default_factory=Counter)
     compared: Counter[str] = field(default_factory=Counter)
@@ -126,12 +129,12 @@ def _note(proof: Proof, trial: Trial, result: Any) -> None:
         proof.left_out[trial.operator] += 1
         return
     if isinstance(result, LimitError):
-        verdict, second = failed_verdict(trial.instance, trial.answer, "gradable", "parse", str(result)), {}
-    else:
-        trial, verdict, second = replace(trial, kind=result[0]), Verdict.model_validate(result[1]), result[2]
+        proof.unjudged.append((trial, str(result)))
+        return
+    trial, verdict, second = replace(trial, kind=result[0]), Verdict.model_validate(result[1]), result[2]
     proof.done[trial.kind, trial.operator] += 1
     proof.by_case[trial.case, trial.kind] += 1
-    if verdict.strict != trial.right or isinstance(result, LimitError):  # a grader that dies is never right
+    if verdict.strict != trial.right:
         proof.wrong.append((trial, verdict))
     case: Any = trial.instance.case
     said = {item.id: item.predicate.name for item in (*case.check, *(a for plan in case.episodes for a in plan.check))}

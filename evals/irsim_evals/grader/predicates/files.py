@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _MAX_SHOWN = 6
 """Number of values that an observation shows."""
-_SECONDS = 60.0
+_SECONDS = 240.0
 """Time [s] after which a command is ended."""
 _MAX_QUOTED = 200
 """Number of characters of an output that an observation quotes."""

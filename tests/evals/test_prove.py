@@ -1,0 +1,58 @@
+"""The proof of the grader, and its command."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import pytest
+
+from irsim_evals.grader.limited import LimitError, run_limited
+from irsim_evals.proof import prove as proof_module
+from irsim_evals.proof.prove import prove, tried
+from tests.evals.conftest import irsim_evals
+
+
+def test_limits_count_processor_time() -> None:
+    assert run_limited(time.sleep, (1.0,), 0.3, "nap") is None  # as on a machine that does something else meanwhile
+    with pytest.raises(LimitError, match=r"the sum took more than 0\.3 s of processor time"):
+        run_limited(sum, (range(10**10),), 0.3, "sum")
+
+
+@pytest.fixture
+def slow_mutant(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The grading of one mutant uses up its time; those of others are made up."""
+
+    def run(work: Any, jobs: Iterable[Any], *_: Any) -> Iterator[Any]:
+        late = LimitError("the grading took more than 120 s of processor time")
+        ended = False
+        for trial, _second in jobs:
+            if trial.kind == "mutant" and not ended:
+                ended = True
+                yield late
+            else:
+                yield tried(trial, False) if trial.kind == "gold" else None
+
+    monkeypatch.setattr(proof_module, "run_all", run)
+
+
+@pytest.mark.usefixtures("slow_mutant")
+def test_a_trial_that_ran_out_of_time_is_neither_accepted_nor_rejected() -> None:
+    proof = prove(["pub-01"])
+    [(trial, why)] = proof.unjudged
+    assert trial.kind == "mutant"
+    assert "120 s of processor time" in why
+    assert proof.wrong == []
+    assert proof.false_accepts == (0, 0)
+    assert proof.false_rejects[0] == 0
+
+
+@pytest.mark.usefixtures("slow_mutant")
+def test_the_command_lists_trials_without_a_verdict_and_fails() -> None:
+    done = irsim_evals("prove", "pub-01")
+    assert done.exit_code == 1
+    [line] = [line for line in done.output.splitlines() if line.startswith("NO VERDICT")]
+    assert "mutant" in line
+    assert line.endswith("the grading took more than 120 s of processor time")
+    assert "accepted" not in line
