@@ -31,7 +31,6 @@ KNOWN = {
     "mcp_server/irsim_mcp/jobs.py": PEER,
     "mcp_server/irsim_mcp/tool.py": "a text that stays a text if it is not JSON",
     "mcp_server/irsim_mcp/worker.py": PEER,
-    "evals/irsim_evals/baselines/edits.py": "texts of the package",
     "evals/irsim_evals/baselines/repair.py": "texts of the package",
     "evals/irsim_evals/baselines/server.py": PEER,
     "evals/irsim_evals/grader/run_program.py": "the log of a process of irsim_evals",

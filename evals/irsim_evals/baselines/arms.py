@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from typing import Any
 
-from irsim_evals.baselines import repair, retrieval, rules
-from irsim_evals.baselines.request import Task, task_of
+from irsim_evals.baselines import repair, retrieval
+from irsim_evals.baselines.retrieval import Task, task_of
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.limited import grade_all
@@ -24,7 +24,6 @@ def _null(task: Task) -> Answer:
 BASELINES: dict[str, Callable[[Iterable[Task]], Iterable[Answer]]] = {
     "null": partial[Any](map, _null),
     "retrieval": partial[Any](map, retrieval.answer),
-    "rules": partial[Any](map, rules.answer),
     "repair": repair.answers,
 }
 """Name → how it answers requests one after the other. Each is expected to pass more cases than the one before."""

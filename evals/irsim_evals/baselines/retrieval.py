@@ -6,15 +6,18 @@ stands around the number, if unit and range allow it. Nothing else of the reques
 
 from __future__ import annotations
 
+import math
+import re
 from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 from irsim.bundled.templates import Parameter, Template, TemplateError, fill, load_all
 from irsim.lookup.full_text import bm25, words_of
-from irsim_evals.baselines.language import Kind, Quantity, plain, quantities
-from irsim_evals.baselines.request import Task
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer
 
-__all__ = ["answer", "best_template", "slots"]
+__all__ = ["Task", "answer", "best_template", "slots", "task_of", "written"]
 
 _SILENT = frozenset(
     {
@@ -26,64 +29,107 @@ _SILENT = frozenset(
 """Words of a request that say nothing of a template."""
 _WINDOW = 24
 """Number of characters before and after a number in which its words are looked for."""
-_UNITS: dict[str, tuple[Kind, ...]] = {
-    "m": ("length",), "m/s": ("speed",), "s": ("time",), "rad": ("angle",), "rad/s": ("turn",), "kg": ("mass",),
-    "Hz": ("rate",), "1": ("count", "share"),
+_UNITS: dict[str | None, tuple[str, float]] = {
+    None: ("1", 1), "m": ("m", 1), "cm": ("m", 0.01), "mm": ("m", 0.001), "m/s": ("m/s", 1), "km/h": ("m/s", 1 / 3.6),
+    "s": ("s", 1), "Hz": ("Hz", 1), "kg": ("kg", 1), "°": ("rad", math.pi / 180), "degrees": ("rad", math.pi / 180),
+    "rad": ("rad", 1), "rad/s": ("rad/s", 1), "%": ("1", 0.01),
 }  # fmt: skip
+"""Unit of a request → unit of a parameter, and the factor between them."""
+_UNIT = "|".join(sorted((re.escape(unit) for unit in _UNITS if unit), key=len, reverse=True))
+_NUMBER = re.compile(rf"(?<![\w.,])(\d+(?:\.\d+)?)(?:[\s-]?({_UNIT})(?![\w/]))?(?![\w.,]\d)")
+
+
+@dataclass(frozen=True)
+class Task:
+    """The part of a case that an agent sees.
+
+    Attributes:
+        prompt: The request to the agent.
+        turns: Messages of the user after each reply.
+        files: The files that the folder starts with: name → text.
+    """
+
+    prompt: str
+    turns: tuple[str, ...] = ()
+    files: Mapping[str, str] | None = None
+
+    @property
+    def requests(self) -> tuple[str, ...]:
+        """All that the user says, one text for each turn."""
+        return (self.prompt, *self.turns)
+
+
+def task_of(instance: Instance) -> Task:
+    """The part of an instance that an agent sees."""
+    return Task(instance.prompt, tuple(instance.case.turns), dict(instance.case.files))
 
 
 def answer(task: Task) -> Answer:
     """The template that fits best, filled with numbers of the request."""
+    text, reply = written(task)
+    files = {**(task.files or {}), "scenario.yaml": text}
+    return Answer("retrieval", files, reply, tuple(reply for _ in task.requests))
+
+
+def written(task: Task, filled: bool = True) -> tuple[str, str]:
+    """The template that fits best, and the reply that goes with it.
+
+    Args:
+        task: What the agent sees.
+        filled: Whether numbers of the request become values of parameters.
+    """
     request = "\n".join(task.requests)
     template = best_template(request)
-    values = slots(template, request)
+    values = slots(template, request) if filled else {}
     try:
         text = fill(template, values)
     except TemplateError:
-        text = template.text
+        text, values = template.text, {}
     used = ", ".join(f"{name} = {value}" for name, value in values.items()) or "its own values"
-    reply = f"Assumed: the template {template.name} ({template.purpose}) with {used}."
-    files = {**(task.files or {}), "scenario.yaml": text}
-    return Answer("retrieval", files, reply, tuple(reply for _ in task.requests))
+    return text, f"Assumed: the template {template.name} ({template.purpose}) with {used}."
 
 
 def best_template(request: str) -> Template:
     """The template that fits a request best."""
     templates = load_all()
     counts = [Counter(words_of(_description(template), _SILENT)) for template in templates]
-    wanted = dict.fromkeys(words_of(plain(request), _SILENT))
+    wanted = dict.fromkeys(words_of(request, _SILENT))
     ranked = bm25([[count[word] for count in counts] for word in wanted], [count.total() for count in counts])
     return templates[max(range(len(templates)), key=lambda i: (ranked[i], -i))]
 
 
 def slots(template: Template, request: str) -> dict[str, float | int]:
     """Values of a template's parameters from the numbers of a request, the surest first."""
-    text = plain(request)
     pairs = [
-        (_fit(name, parameter, text, quantity), name, quantity)
+        (_fit(name, parameter, value, unit, around), name, value, start)
+        for value, unit, around, start in _numbers(request)
         for name, parameter in template.parameters.items()
-        for quantity in quantities(text)
     ]
     chosen: dict[str, float | int] = {}
     spent: set[int] = set()
-    for fit, name, quantity in sorted(pairs, key=lambda pair: (-pair[0], pair[2].start)):
-        if fit > 0 and name not in chosen and quantity.start not in spent:
-            integer = template.parameters[name].type == "integer"
-            chosen[name] = int(quantity.value) if integer else quantity.value
-            spent.add(quantity.start)
+    for fit, name, value, start in sorted(pairs, key=lambda pair: (-pair[0], pair[3])):
+        if fit > 0 and name not in chosen and start not in spent:
+            chosen[name] = int(value) if template.parameters[name].type == "integer" else value
+            spent.add(start)
     return chosen
 
 
-def _fit(name: str, parameter: Parameter, text: str, quantity: Quantity) -> int:
+def _numbers(request: str) -> Iterator[tuple[float, str, str, int]]:
+    """The numbers of a request that are written as digits: value, unit, the words around it, and where it stands."""
+    for match in _NUMBER.finditer(request):
+        unit, factor = _UNITS[match[2]]
+        around = f"{request[max(0, match.start() - _WINDOW) : match.start()]} {request[match.end() :][:_WINDOW]}"
+        yield round(float(match[1]) * factor, 9), unit, around, match.start()
+
+
+def _fit(name: str, parameter: Parameter, value: float, unit: str, around: str) -> int:
     """How many words a parameter shares with what stands around a number; 0 if it cannot take the number."""
-    kinds = _UNITS.get(parameter.unit or "1", ())
-    if parameter.type not in ("number", "integer") or quantity.kind not in kinds:
+    if parameter.type not in ("number", "integer") or (parameter.unit or "1") != unit:
         return 0
     try:
-        parameter.check(name, quantity.value)
+        parameter.check(name, value)
     except TemplateError:
         return 0
-    around = text[max(0, quantity.start - _WINDOW) : quantity.start] + " " + text[quantity.end : quantity.end + _WINDOW]
     described = f"{name} {parameter.description}".replace("_", " ")
     return len(set(words_of(around, _SILENT)) & set(words_of(described, _SILENT)))
 

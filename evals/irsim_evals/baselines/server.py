@@ -25,26 +25,13 @@ class Server:
         self._portal = portal
         self._client = client
 
-    def validate(self, text: str, base: str | None = None) -> dict[str, Any] | None:
-        """All findings of a scenario, as ``irsim validate --json`` has them; None if the tool could not say.
+    def validate(self, text: str) -> dict[str, Any] | None:
+        """All findings of a scenario, as ``irsim validate --json`` has them; None if the tool could not say."""
+        return self._call("validate_scenario", scenario_yaml=text, simulate=False, max_issues=100)
 
-        Args:
-            text: The scenario.
-            base: The scenario before an edit; findings then say whether it has them, too.
-        """
-        more = {} if base is None else {"base": base}
-        return self._call("validate_scenario", scenario_yaml=text, simulate=False, max_issues=100, **more)
-
-    def run(self, text: str, seed: int = 0, steps: int | None = None) -> dict[str, Any] | None:
-        """The result of one episode, as ``irsim run --json`` has it; None if the scenario does not run.
-
-        Args:
-            text: The scenario.
-            seed: Seed of the episode.
-            steps: Greatest number of steps; default: until the time limit of the scenario.
-        """
-        more = {} if steps is None else {"max_steps": steps}
-        return self._call("run_episode", scenario_yaml=text, seed=seed, **more)
+    def run(self, text: str) -> dict[str, Any] | None:
+        """The result of one episode, as ``irsim run --json`` has it; None if the scenario does not run."""
+        return self._call("run_episode", scenario_yaml=text)
 
     def _call(self, tool: str, **arguments: Any) -> dict[str, Any] | None:
         result = self._portal.call(self._client.call_tool, tool, {**arguments, "response_format": "json"})

@@ -33,7 +33,7 @@ def run(
     arm: Annotated[
         list[str] | None,
         typer.Option(
-            help="Who answers: null, retrieval, rules, repair; baselines for these four; no-skill, skill, skill+mcp or "
+            help="Who answers: null, retrieval, repair; baselines for these three; no-skill, skill, skill+mcp or "
             "skill+mcp+distractors with a model. Give it several times for several arms."
         ),
     ] = None,
