@@ -8,13 +8,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import AfterValidator
-
 from irsim.scenario.resolve.body_size import top_speed
 from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.hues import hue_of
 from irsim_evals.grader.matching import Kind
 from irsim_evals.grader.scene import GradedScene
+from irsim_evals.grader.words import OneOf
 
 __all__ = ["PROPERTIES", "Property", "PropertyName", "value_of", "yaml_path"]
 
@@ -27,11 +26,13 @@ class Property:
         kind: Kind of quantity.
         key: Key of the entry that decides it.
         of: Computes it; None where the body has no such property.
+        sentence: What it is, for authors of cases.
     """
 
     kind: Kind
     key: str
     of: Callable[[GradedScene, GradedBody], Any]
+    sentence: str
 
 
 def _goal(component: int) -> Callable[[GradedScene, GradedBody], Any]:
@@ -136,78 +137,83 @@ def _turn(scene: GradedScene, body: GradedBody, sign: int) -> float | None:
 
 
 PROPERTIES: dict[str, Property] = {
-    "name": Property("name", "name", lambda _, body: body.name),
-    "role": Property("name", "role", lambda _, body: body.role),
-    "static": Property("flag", "static", lambda _, body: body.static),
-    "passable": Property("flag", "unobstructed", lambda _, body: body.passable),
-    "kinematics": Property("name", "kinematics", lambda _, body: body.kinematics),
-    "wheelbase": Property("size", "kinematics", lambda _, body: body.record.wheelbase),
-    "shape": Property("name", "shape", lambda _, body: body.shape),
-    "radius": Property("size", "shape", lambda _, body: body.radius),
-    "long_side": Property("size", "shape", _side(0)),
-    "short_side": Property("size", "shape", _side(1)),
-    "axis": Property("axis", "state", _axis),
-    "aspect": Property("size", "shape", _aspect),
-    "length": Property("size", "shape", _along(0)),
-    "width": Property("size", "shape", _along(1)),
-    "area": Property("size", "shape", lambda _, body: float(body.footprint.area)),
+    "name": Property("name", "name", lambda _, body: body.name, "Its name."),
+    "role": Property("name", "role", lambda _, body: body.role, "``robot`` or ``obstacle``."),
+    "static": Property("flag", "static", lambda _, body: body.static, "Whether it never moves."),
+    "passable": Property("flag", "unobstructed", lambda _, body: body.passable, "Whether others pass through it."),
+    "kinematics": Property("name", "kinematics", lambda _, body: body.kinematics, "Name of its drive."),
+    "wheelbase": Property("size", "kinematics", lambda _, body: body.record.wheelbase, "Distance of a car's axles."),
+    "shape": Property("name", "shape", lambda _, body: body.shape, "Such as ``square`` or ``line``."),
+    "radius": Property("size", "shape", lambda _, body: body.radius, "Radius of a disc."),
+    "long_side": Property("size", "shape", _side(0), "Longer side of a rectangle; length of a line."),
+    "short_side": Property("size", "shape", _side(1), "Shorter side of a rectangle; 0 for a line."),
+    "axis": Property("axis", "state", _axis, "Direction of the longer side of a rectangle, or the opposite one."),
+    "aspect": Property("size", "shape", _aspect, "Longer side of a rectangle divided by the shorter one."),
+    "length": Property("size", "shape", _along(0), "Extent along its own heading; a disc has none."),
+    "width": Property("size", "shape", _along(1), "Extent across its own heading; a disc has none."),
+    "area": Property("size", "shape", lambda _, body: float(body.footprint.area), "Area of its outline in m²."),
     "convex": Property(
-        "flag", "shape", lambda _, body: body.footprint.convex_hull.area <= body.footprint.area * (1 + 1e-6)
+        "flag",
+        "shape",
+        lambda _, body: body.footprint.convex_hull.area <= body.footprint.area * (1 + 1e-6),
+        "Whether its outline has no dents.",
     ),
-    "x": Property("length", "state", lambda _, body: body.position[0]),
-    "y": Property("length", "state", lambda _, body: body.position[1]),
-    "x_share": Property("share", "state", _of_world(0)),
-    "y_share": Property("share", "state", _of_world(1)),
-    "heading": Property("heading", "state", lambda _, body: body.pose[2]),
-    "goals": Property("count", "goal", lambda _, body: len(body.goals)),
-    "goal_x": Property("length", "goal", _goal(0)),
-    "goal_y": Property("length", "goal", _goal(1)),
-    "goal_x_share": Property("share", "goal", _goal_of_world(0)),
-    "goal_y_share": Property("share", "goal", _goal_of_world(1)),
-    "goal_heading": Property("heading", "goal", _goal(2)),
-    "goal_dx": Property("length", "goal", _goal_offset(0)),
-    "goal_dy": Property("length", "goal", _goal_offset(1)),
-    "goal_direction": Property("heading", "goal", _to_goal),
-    "goal_distance": Property("length", "goal", _straight),
-    "way": Property("length", "goal", _way),
-    "threshold": Property("length", "goal_threshold", lambda _, body: body.record.goal_threshold),
-    "arrive_mode": Property("name", "arrive_mode", lambda _, body: body.record.arrive_mode),
-    "behavior": Property("name", "behavior", lambda _, body: body.behavior),
-    "options": Property("name", "behavior", lambda _, body: sorted(body.options.items(), key=str)),
-    "local": Property("name", "behavior.local", _local),
-    "avoids": Property("flag", "behavior", lambda _, body: body.avoids),
-    "wander": Property("flag", "behavior.wander", lambda _, body: body.record.wander),
-    "loop": Property("flag", "behavior.loop", lambda _, body: body.record.loop),
-    "forward": Property("speed", "vel_max", lambda _, body: body.forward),
-    "backward": Property("speed", "vel_min", lambda _, body: body.backward),
-    "sideways": Property("speed", "vel_max", lambda _, body: body.sideways),
-    "turn": Property("rate", "vel_max", lambda _, body: body.turn),
-    "steer": Property("angle", "vel_max", lambda _, body: body.steer),
-    "leftward": Property("speed", "vel_max", _limit(("omni", "omni_angular"), 1, 1)),
-    "rightward": Property("speed", "vel_min", _limit(("omni", "omni_angular"), 1, -1)),
-    "turn_left": Property("rate", "vel_max", lambda s, b: _turn(s, b, 1)),
-    "turn_right": Property("rate", "vel_min", lambda s, b: _turn(s, b, -1)),
-    "steer_left": Property("angle", "vel_max", _limit(("acker",), 1, 1)),
-    "steer_right": Property("angle", "vel_min", _limit(("acker",), 1, -1)),
-    "top_speed": Property("speed", "vel_max", lambda _, body: float(top_speed(body.record))),
-    "sensors": Property("count", "sensors", lambda _, body: len(body.sensors)),
-    "fov": Property("angle", "fov", lambda _, body: body.record.fov),
-    "fov_radius": Property("length", "fov_radius", lambda _, body: body.record.fov_radius),
-    "color": Property("name", "color", lambda _, body: body.color),
-    "hue": Property("name", "color", lambda _, body: hue_of(body.color)),
-    "tags": Property("name", "tags", lambda _, body: list(body.record.tags)),
-    "group": Property("count", "group", lambda _, body: body.record.group),
+    "x": Property("length", "state", lambda _, body: body.position[0], "Where it starts; of a static body its middle."),
+    "y": Property("length", "state", lambda _, body: body.position[1], "Where it starts, as ``x``."),
+    "x_share": Property("share", "state", _of_world(0), "``x`` as a share of the world: 0 is its left edge."),
+    "y_share": Property("share", "state", _of_world(1), "``y`` as a share of the world: 0 is its lower edge."),
+    "heading": Property("heading", "state", lambda _, body: body.pose[2], "Its heading at the start."),
+    "goals": Property("count", "goal", lambda _, body: len(body.goals), "How many goals it has, waypoints included."),
+    "goal_x": Property("length", "goal", _goal(0), "``x`` of its last goal."),
+    "goal_y": Property("length", "goal", _goal(1), "``y`` of its last goal."),
+    "goal_x_share": Property("share", "goal", _goal_of_world(0), "``goal_x`` as a share of the world."),
+    "goal_y_share": Property("share", "goal", _goal_of_world(1), "``goal_y`` as a share of the world."),
+    "goal_heading": Property("heading", "goal", _goal(2), "Heading of its last goal, if the goal has one."),
+    "goal_dx": Property("length", "goal", _goal_offset(0), "``goal_x`` less its ``x`` at the start."),
+    "goal_dy": Property("length", "goal", _goal_offset(1), "``goal_y`` less its ``y`` at the start."),
+    "goal_direction": Property("heading", "goal", _to_goal, "Direction from its start to its last goal."),
+    "goal_distance": Property("length", "goal", _straight, "Straight distance from its start to its last goal."),
+    "way": Property("length", "goal", _way, "Length of the straight lines from its start over all goals."),
+    "threshold": Property(
+        "length", "goal_threshold", lambda _, body: body.record.goal_threshold, "Distance of arrival."
+    ),
+    "arrive_mode": Property(
+        "name", "arrive_mode", lambda _, body: body.record.arrive_mode, "``position`` or ``state``."
+    ),
+    "behavior": Property("name", "behavior", lambda _, body: body.behavior, "Name of its behavior, or its group's."),
+    "options": Property(
+        "name", "behavior", lambda _, body: sorted(body.options.items(), key=str), "Keys of its behavior."
+    ),
+    "local": Property("name", "behavior.local", _local, "Name of the behavior between corners of a planned path."),
+    "avoids": Property("flag", "behavior", lambda _, body: body.avoids, "Whether its behavior avoids others."),
+    "wander": Property("flag", "behavior.wander", lambda _, body: body.record.wander, "Whether its goals are random."),
+    "loop": Property(
+        "flag", "behavior.loop", lambda _, body: body.record.loop, "Whether it goes round its goals for ever."
+    ),
+    "forward": Property("speed", "vel_max", lambda _, body: body.forward, "Greatest speed forwards."),
+    "backward": Property("speed", "vel_min", lambda _, body: body.backward, "Greatest speed backwards, or 0."),
+    "sideways": Property("speed", "vel_max", lambda _, body: body.sideways, "Greatest speed to either side."),
+    "turn": Property("rate", "vel_max", lambda _, body: body.turn, "Greatest turn rate to either side."),
+    "steer": Property("angle", "vel_max", lambda _, body: body.steer, "Greatest steering angle to either side."),
+    "leftward": Property("speed", "vel_max", _limit(("omni", "omni_angular"), 1, 1), "Greatest speed to its left."),
+    "rightward": Property("speed", "vel_min", _limit(("omni", "omni_angular"), 1, -1), "Greatest speed to its right."),
+    "turn_left": Property("rate", "vel_max", lambda s, b: _turn(s, b, 1), "Greatest turn rate to the left."),
+    "turn_right": Property("rate", "vel_min", lambda s, b: _turn(s, b, -1), "Greatest turn rate to the right."),
+    "steer_left": Property("angle", "vel_max", _limit(("acker",), 1, 1), "Greatest steering angle to the left."),
+    "steer_right": Property("angle", "vel_min", _limit(("acker",), 1, -1), "Greatest steering angle to the right."),
+    "top_speed": Property("speed", "vel_max", lambda _, body: float(top_speed(body.record)), "Greatest speed at all."),
+    "sensors": Property("count", "sensors", lambda _, body: len(body.sensors), "How many sensors it has."),
+    "fov": Property("angle", "fov", lambda _, body: body.record.fov, "Angle of its field of view."),
+    "fov_radius": Property("length", "fov_radius", lambda _, body: body.record.fov_radius, "Reach of its ``fov``."),
+    "color": Property("name", "color", lambda _, body: body.color, "Its color as ``#rrggbb``."),
+    "hue": Property("name", "color", lambda _, body: hue_of(body.color), "Its color in a word such as ``red``."),
+    "tags": Property("name", "tags", lambda _, body: list(body.record.tags), "Its tags, a list."),
+    "group": Property("count", "group", lambda _, body: body.record.group, "Number of its group."),
 }
 """Name → property."""
 
 
-def _known(name: str) -> str:
-    if name not in PROPERTIES:
-        raise ValueError(f"no property is called {name!r}; there are {', '.join(PROPERTIES)}")
-    return name
-
-
-PropertyName = Annotated[str, AfterValidator(_known)]
+PropertyName = Annotated[str, OneOf("property", PROPERTIES)]
 """Name of a property that there is."""
 
 

@@ -5,21 +5,29 @@ from __future__ import annotations
 import re
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic import BaseModel, ConfigDict
 
 from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.matching import Match, Quantity, matches
-from irsim_evals.grader.properties import PROPERTIES, value_of
+from irsim_evals.grader.properties import PROPERTIES, PropertyName, value_of
 from irsim_evals.grader.scene import GradedScene
+from irsim_evals.grader.words import Listed, OneOf, Regex
 
-__all__ = ["BUILT_IN", "Selector", "select"]
-
-
-def _names(value: Any) -> Any:
-    return [value] if isinstance(value, str) else value
+__all__ = ["BUILT_IN", "Selection", "Selector", "select"]
 
 
-Names = Annotated[list[str], BeforeValidator(_names)]
+_BUILT_IN: dict[str, dict[str, Any]] = {
+    "all": {},
+    "robots": {"role": "robot"},
+    "obstacles": {"role": "obstacle"},
+    "movers": {"static": False},
+    "statics": {"static": True},
+    "solids": {"static": True, "passable": False},
+}
+Selection = Annotated[str, OneOf("selection", tuple(_BUILT_IN), own="selections")]
+"""Name of a selection: a built-in one, or one that the case has under ``select``."""
+Names = Annotated[list[str], Listed()]
+Selections = Annotated[list[Selection], Listed()]
 
 
 class Selector(BaseModel):
@@ -37,28 +45,21 @@ class Selector(BaseModel):
     """Name of its drive, or several."""
     shape: Names | None = None
     """``circle``, ``square``, ``rectangle``, ``line``, ``polygon``, ``compound``; a square is a rectangle, too."""
-    named: str | None = None
+    named: Regex | None = None
     """Regular expression that its name, the name of its group or one of its tags contains, ignoring case."""
     inside: tuple[Quantity, Quantity, Quantity, Quantity] | None = None
     """x0, y0, x1, y1 of a region that holds its position [m]."""
-    among: Names | None = None
+    among: Selections | None = None
     """Other selections that it belongs to."""
-    beyond: Names | None = None
+    beyond: Selections | None = None
     """Other selections that it does not belong to."""
-    having: dict[str, Match] = {}
+    having: dict[PropertyName, Match] = {}
     """Properties that it has."""
     any_of: list[Selector] = []
     """It meets at least one of these."""
 
 
-BUILT_IN: dict[str, Selector] = {
-    "all": Selector(),
-    "robots": Selector(role="robot"),
-    "obstacles": Selector(role="obstacle"),
-    "movers": Selector(static=False),
-    "statics": Selector(static=True),
-    "solids": Selector(static=True, passable=False),
-}
+BUILT_IN = {name: Selector(**keys) for name, keys in _BUILT_IN.items()}
 """Selections that every case has."""
 
 

@@ -14,6 +14,7 @@ from irsim.common.lazy import module_names
 from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.matching import show
 from irsim_evals.grader.outcome import Mark, Stage
+from irsim_evals.grader.selection import Selection
 
 if TYPE_CHECKING:
     from irsim_evals.grader.episode import GradedEpisode
@@ -75,7 +76,7 @@ class ScenePredicate(Predicate):
 class OfBodies(Predicate):
     """About the bodies of a selection, of which there must be some unless a predicate says otherwise."""
 
-    of: str
+    of: Selection
     """Name of the selection."""
 
 

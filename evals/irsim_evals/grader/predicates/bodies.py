@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
+from irsim.options.registry import SENSORS
 from irsim_evals.grader.hues import discernible
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register, summary
 from irsim_evals.grader.properties import PROPERTIES, PropertyName, value_of, yaml_path
+from irsim_evals.grader.words import OneOf
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
@@ -33,6 +35,9 @@ SENSOR_KINDS: dict[str, Kind] = {
     "spacing": "angle",
 }
 """Parameter → what it measures."""
+_KEYS = {key for name in SENSORS.installed() if (one := SENSORS.get(name)) for key in one.options.model_fields}
+SensorKey = Annotated[str, OneOf("parameter of a sensor", (*SENSOR_KINDS, *sorted(_KEYS - {*SENSOR_KINDS})))]
+"""Parameter of a sensor."""
 
 
 @register("count")
@@ -84,7 +89,7 @@ class Each(OfBodies, ScenePredicate):
 class Distinct(OfBodies, ScenePredicate):
     """How many different values a property has among the bodies of a selection; colors must look different."""
 
-    property: str
+    property: PropertyName
     """Name of the property."""
     number: Match
     """Accepted numbers of different values."""
@@ -158,7 +163,7 @@ def _assign(row: int, fits: list[list[int]], row_of: dict[int, int], tried: set[
 class Sensor(OfBodies, ScenePredicate):
     """Every body of a selection has sensors with some parameters. An empty selection fails."""
 
-    has: dict[str, Match] = {}
+    has: dict[SensorKey, Match] = {}
     """Parameter of the sensor as the simulator holds it → accepted values. ``direction`` is where its middle beam
     points relative to the body, ``mounted`` how far it sits from the origin of the body, ``spacing`` the angle between
     two beams."""

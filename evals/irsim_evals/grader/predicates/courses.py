@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import shapely
@@ -11,6 +11,7 @@ import shapely
 from irsim_evals.grader.matching import Counted, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, judged, register, summary
+from irsim_evals.grader.selection import Selection
 
 if TYPE_CHECKING:
     from irsim_evals.grader.episode import GradedEpisode
@@ -187,14 +188,14 @@ class Timetable(OfBodies, EpisodePredicate):
 class Crosses(OfBodies, EpisodePredicate):
     """Bodies of a selection cross the line of another body's way from one side to the other."""
 
-    way_of: str
+    way_of: Selection
     """Selection of one body, whose way leads from its start to its goal."""
     number: Match
     """Accepted numbers of bodies that cross."""
     ahead: bool = True
     """Only crossings ahead of the body count."""
-    direction: str | None = None
-    """``right_to_left`` or ``left_to_right``, seen by the body; only those count."""
+    direction: Literal["right_to_left", "left_to_right"] | None = None
+    """Only those count that cross so, seen by the body."""
     spread: Quantity = 0.0
     """Least time between the first and the last crossing [s]."""
 

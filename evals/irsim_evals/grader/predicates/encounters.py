@@ -11,6 +11,7 @@ import shapely.affinity
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, register, summary
+from irsim_evals.grader.selection import Selection
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
@@ -47,9 +48,9 @@ class Collisions(OfBodies, EpisodePredicate):
 class Separation(EpisodePredicate):
     """The smallest distance between the bodies of two selections, edge to edge, at any time of the episode."""
 
-    of: str
+    of: Selection
     """Name of the first selection."""
-    to: str
+    to: Selection
     """Name of the second selection."""
     distance: Match
     """Accepted values of the smallest distance [m]."""
@@ -90,7 +91,7 @@ def _moved(body: GradedBody, pose: Any) -> Any:
 class RangeTrend(OfBodies, EpisodePredicate):
     """How many bodies of a selection come nearer to a body, and how many go away from it."""
 
-    to: str
+    to: Selection
     """Selection of the one body."""
     within: Quantity
     """Time over which the distance is compared [s]."""
@@ -123,7 +124,7 @@ class RangeTrend(OfBodies, EpisodePredicate):
 class Radial(EpisodePredicate):
     """How many beams measure a radial velocity below and above a threshold."""
 
-    of: str
+    of: Selection
     """Selection of the one body with the sensor."""
     at: Quantity
     """Time of the scan [s]."""

@@ -17,6 +17,7 @@ from irsim.common.yaml.plain import read_plain_yaml
 from irsim_evals.grader.matching import Match, matches, show
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register
 from irsim_evals.grader.programs import problems_in, run_program
+from irsim_evals.grader.words import Regex
 
 if TYPE_CHECKING:
     from irsim.results.validation import ScenarioDiff
@@ -38,9 +39,9 @@ class Files(AnswerPredicate):
     """Such as ``*.py``."""
     number: Match
     """Accepted numbers of files; given files are left out."""
-    contain: list[str] = []
+    contain: list[Regex] = []
     """Regular expressions that each of them contains."""
-    lack: list[str] = []
+    lack: list[Regex] = []
     """Regular expressions that none of them contains."""
 
     def observe(self, material: Material) -> Observation:
@@ -131,7 +132,7 @@ class Edits(AnswerPredicate):
     """Whether every comment must still be there."""
     same: bool | None = None
     """Whether nothing at all may differ."""
-    not_left: list[str] = Field(default_factory=list)
+    not_left: list[Regex] = Field(default_factory=list)
     """Regular expressions that no line of the new file may contain."""
 
     def observe(self, material: Material) -> Observation:
@@ -226,7 +227,7 @@ class Program(AnswerPredicate):
     """Names of the programs; given ones are left out."""
     number: Match = Match(ge=1)
     """Accepted numbers of programs."""
-    prints: list[str] = []
+    prints: list[Regex] = []
     """Regular expressions, ignoring case; the outputs of all programs together contain each."""
 
     def observe(self, material: Material) -> Observation:
@@ -258,7 +259,7 @@ class Command(AnswerPredicate):
 
     run: str
     """The command: ``python …``, or one of this project, such as ``irsim validate …``."""
-    prints: str | None = None
+    prints: Regex | None = None
     """Regular expression that its standard output contains."""
 
     def observe(self, material: Material) -> Observation:

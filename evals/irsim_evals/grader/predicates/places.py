@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import shapely
 from pydantic import model_validator
@@ -13,6 +13,8 @@ from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, middle, register, summary
+from irsim_evals.grader.selection import BUILT_IN, Selection
+from irsim_evals.grader.words import OneOf
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from irsim_evals.grader.scene import GradedScene
 
 _DIRECTIONS = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": -math.pi / 2}
+Toward = Annotated[str, OneOf("direction or selection", ("goal", *_DIRECTIONS, *BUILT_IN), own="selections")]
 
 
 @register("inside")
@@ -74,7 +77,7 @@ class Near(OfBodies, ScenePredicate):
 
     stage = "relations"
 
-    to: str | None = None
+    to: Selection | None = None
     """Name of the other selection."""
     place: tuple[Quantity, Quantity] | None = None
     """A place instead of a selection [m]."""
@@ -160,7 +163,7 @@ class Beside(OfBodies, ScenePredicate):
 
     stage = "relations"
 
-    way_of: str
+    way_of: Selection
     """Selection of one body, whose way leads from its start to its goal."""
     what: Literal["start", "goal"] = "start"
     """The place that lies there."""
@@ -255,7 +258,7 @@ class Facing(OfBodies, ScenePredicate):
 
     stage = "relations"
 
-    toward: str | tuple[Quantity, Quantity] | Literal["goal"]
+    toward: Toward | tuple[Quantity, Quantity]
     """``goal``, ``north``, ``east``, ``south``, ``west``, a place [m], or the name of a selection: its middle."""
     tol: Quantity = math.radians(20)
     """Greatest deviation [rad]."""

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
-
-from pydantic import AfterValidator
+from typing import TYPE_CHECKING
 
 from irsim.options.registry import BEHAVIORS, KINEMATICS
 from irsim_evals.grader.matching import UNITS, Counted, Match, Quantity, matches, quantity, show
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register
-from irsim_evals.grader.properties import value_of, yaml_path
+from irsim_evals.grader.properties import PropertyName, value_of, yaml_path
+from irsim_evals.grader.selection import Selection
+from irsim_evals.grader.words import Regex
 
 if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
@@ -43,15 +43,6 @@ _MAX_QUOTED = 120
 _STATED = re.compile(r"(?<![\w.,])(\d+(?:[.,]\d+)?)\s*(km/h|m/s|cm|mm|m|°|deg|rad)?(?![\w])")
 _AROUND = 100
 """Number of characters before and behind a about in which its value is looked for."""
-
-
-def _compiles(pattern: str) -> str:
-    re.compile(pattern)
-    return pattern
-
-
-Regex = Annotated[str, AfterValidator(_compiles)]
-"""A regular expression."""
 
 
 @dataclass(frozen=True)
@@ -181,7 +172,7 @@ class Says(AnswerPredicate):
 class MentionsLimit(AnswerPredicate):
     """The reply names limits, each in one of several ways."""
 
-    limits: dict[str, list[str]]
+    limits: dict[str, list[Regex]]
     """Name of a limit → regular expressions, one of which occurs."""
     at_least: Counted | None = None
     """How many of them must be named; default: all."""
@@ -198,9 +189,9 @@ class MentionsLimit(AnswerPredicate):
 class States(AnswerPredicate):
     """The reply gives the value that a property of a body has in the world, near words that name the about."""
 
-    of: str
+    of: Selection
     """Name of the selection; its first body counts."""
-    property: str
+    property: PropertyName
     """Name of the property."""
     about: Regex
     """Regular expression for words near the value, ignoring case."""

@@ -12,6 +12,7 @@ from irsim_evals.grader.artefact import scenarios_in
 from irsim_evals.grader.matching import Counted, Match, Quantity, matches
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, Predicate, register, registered
 from irsim_evals.grader.runs_of_answers import Runs, runs_of
+from irsim_evals.grader.words import Regex
 
 if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
@@ -93,7 +94,7 @@ class Comparison(AnswerPredicate):
     """Number of episodes of each behavior and number of robots."""
     steps: Counted
     """Horizon in steps."""
-    metrics: dict[str, list[str]]
+    metrics: dict[str, list[Regex]]
     """Name → regular expressions, one of which occurs in what runs the scenarios or in what it prints."""
     seconds: Quantity = 20.0
     """How long the rehearsal of each program may take [s]."""

@@ -12,6 +12,7 @@ from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, middle, register
+from irsim_evals.grader.selection import Selection
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
@@ -95,7 +96,7 @@ class LinePasses(OfBodies, ScenePredicate):
 
     stage = "relations"
 
-    by: str
+    by: Selection
     """Name of the other selection: its middle is the mean of its positions."""
     distance: Match
     """Accepted distances of the line from that middle [m]."""

@@ -1,0 +1,75 @@
+"""Words of a case that must be known: a misspelt one is an error when the case is read, with the nearest match."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any
+
+from pydantic import AfterValidator
+from pydantic_core import CoreSchema, core_schema
+
+from irsim.diagnostics.diagnostic import nearest
+from irsim.options.base import problem
+
+__all__ = ["Listed", "OneOf", "Regex"]
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """Metadata of a text that is one of some words.
+
+    Attributes:
+        kind: What the words are, for messages.
+        words: The words.
+        own: Key of the validation context with further words, which each case defines. Without a context these cannot
+            be checked.
+    """
+
+    kind: str
+    words: Collection[str] = field(hash=False)
+    own: str = ""
+
+    def _check(self, word: str, info: core_schema.ValidationInfo) -> str:
+        further: Mapping[str, Collection[str]] | None = info.context
+        if word in self.words or (self.own and further is None):
+            return word
+        known = [*(further or {}).get(self.own, ()), *self.words]
+        if word in known:
+            return word
+        near = nearest(word, known)
+        message = f"there is no {self.kind} {word!r}"
+        raise problem("unknown-value", message, allowed=known, fix=f"write {near}" if near else None, replace=near)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return core_schema.with_info_after_validator_function(self._check, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: Any) -> dict[str, Any]:
+        return {"type": "string"} if self.own else {"type": "string", "enum": list(self.words)}
+
+
+@dataclass(frozen=True)
+class Listed:
+    """Metadata of a list that may be written as its only item."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(
+            lambda value: value if isinstance(value, list) else [value], handler(source)
+        )
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: Any) -> dict[str, Any]:
+        of_list = handler(schema)
+        return {"anyOf": [of_list["items"], of_list]}
+
+
+def _compiles(pattern: str) -> str:
+    try:
+        re.compile(pattern)
+    except re.error as error:
+        raise problem("invalid-value", f"{pattern!r} is not a regular expression: {error}") from None
+    return pattern
+
+
+Regex = Annotated[str, AfterValidator(_compiles)]
+"""A regular expression."""
