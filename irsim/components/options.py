@@ -145,6 +145,15 @@ class KinematicsOptions(Options):
     wheelbase: Annotated[Meters, Field(ge=0)] | None = None
     """Distance between the axles for the motion model; null is the `wheelbase` of the shape."""
 
+    def steering(self, low: Sequence[float], high: Sequence[float]) -> tuple[float, float]:
+        """Largest steering angles to the right and to the left [rad], of a drive that steers wheels.
+
+        Args:
+            low: Lower limits of its controls, ``vel_min``.
+            high: Upper limits, ``vel_max``.
+        """
+        return max(0.0, -low[1]), max(0.0, high[1])
+
 
 class CustomKinematics(KinematicsOptions):
     """A drive registered by user code: its own keys reach the registered function as they are."""

@@ -8,6 +8,7 @@ from irsim.lookup import Answer, as_brief_text, as_text, lookup
 from irsim.lookup.full_text import words_of
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.synonyms import EVERYDAY, named
+from irsim.options.registry import BEHAVIORS
 from irsim.scenario.model.json_schema import json_schema
 
 pytestmark = pytest.mark.one_python
@@ -148,3 +149,9 @@ def test_a_whole_everyday_name_comes_before_texts_that_have_its_words() -> None:
     for words in ("laser scanner", "differential drive", "field of view"):
         (hits,) = lookup(words, schema=SCHEMA).groups.values()
         assert hits[0].name in EVERYDAY
+
+
+def test_the_guide_to_avoidance_names_each_behavior_that_avoids_others() -> None:
+    avoiding = [feature.name for feature in BEHAVIORS.features() if getattr(feature.options, "avoids", False)]
+    assert len(avoiding) > 3
+    assert {name for name in avoiding if name not in GUIDES["avoidance"].text} == set()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
+from irsim.components.options import BehaviorOptions
 from irsim.diagnostics.diagnostic import format_path
 
 if TYPE_CHECKING:
@@ -19,10 +20,6 @@ __all__ = ["Box", "GradedBody", "body_of"]
 
 _STRAIGHT = 1e-6
 """Largest deviation [m] of an outline from a rectangle that counts as none."""
-_AVOIDING = ("rvo", "orca", "sfm")
-"""Behaviors that avoid others."""
-_CROSSWISE = ("omni", "omni_angular")
-"""Drives whose second control is a speed sideways."""
 
 
 @dataclass(frozen=True)
@@ -58,8 +55,10 @@ class GradedBody:
         radius: Radius of a disc; None for other shapes.
         box: The rectangle that the footprint is; None for other shapes.
         extent: Length and width in the body frame, along and across its heading.
-        forward, backward, sideways, turn, steer: Greatest speeds [m/s], turn rate [rad/s] and steering angle [rad]
-            that its limits allow; None where its drive has no such control.
+        ranges: Greatest speeds ``forward``, ``backward``, ``leftward``, ``rightward`` [m/s], turn rates ``turn_left``,
+            ``turn_right`` [rad/s] and steering angles ``steer_left``, ``steer_right`` [rad] that its limits, its drive
+            and its behavior allow; those that its drive has and that something limits.
+        avoided: Role of the objects that it avoids, or ``all``; None if it avoids none.
         sensors: Options of each sensor as the simulator holds them.
         color: As ``#rrggbb`` where it is a color; None for the color of its role.
         limits: ``vel_min``, ``vel_max`` and ``acce`` of each control.
@@ -77,11 +76,8 @@ class GradedBody:
     radius: float | None
     box: Box | None
     extent: tuple[float, float]
-    forward: float | None
-    backward: float | None
-    sideways: float | None
-    turn: float | None
-    steer: float | None
+    ranges: dict[str, float]
+    avoided: str | None
     sensors: list[dict[str, Any]]
     color: str | None
     limits: dict[str, list[float]] = field(default_factory=dict)
@@ -120,16 +116,37 @@ class GradedBody:
         return self.goals[-1] if self.goals else None
 
     @property
+    def forward(self) -> float | None:
+        """Greatest speed ahead [m/s]; None where its drive has no such control, as for the ranges below."""
+        return self._range("forward")
+
+    @property
+    def backward(self) -> float | None:
+        """Greatest speed backwards [m/s]."""
+        return self._range("backward")
+
+    @property
+    def sideways(self) -> float | None:
+        """Greatest speed sideways [m/s]."""
+        return self._range("leftward", "rightward")
+
+    @property
+    def turn(self) -> float | None:
+        """Greatest turn rate [rad/s]."""
+        return self._range("turn_left", "turn_right")
+
+    @property
+    def steer(self) -> float | None:
+        """Greatest steering angle [rad]."""
+        return self._range("steer_left", "steer_right")
+
+    def _range(self, *names: str) -> float | None:
+        return max((self.ranges[name] for name in names if name in self.ranges), default=None)
+
+    @property
     def slowest(self) -> float:
         """Least forward speed that its limits allow [m/s]; negative where it may go backwards."""
         return self.limits["vel_min"][0] if self.limits["vel_min"] else 0.0
-
-    @property
-    def avoids(self) -> bool:
-        """Whether its behavior, or the one that drives it between the turns of its path, avoids others."""
-        local = self.options.get("local")
-        inner = local.get("name") if isinstance(local, dict) else local
-        return self.behavior in _AVOIDING or inner in _AVOIDING
 
     @property
     def shape(self) -> str:
@@ -149,8 +166,8 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> GradedBody:
     """The body of an object."""
     record: Any = view.record
     kinematics = None if record.static or record.kinematics is None else str(record.kinematics.name)
-    of_group = record.behavior is None and kinematics is not None
-    options = record.group_behavior if of_group else record.behavior
+    options = (record.active_behavior if record.joined else record.behavior) if kinematics else None
+    acts = getattr(options, "local", options)
     given = not scenario.is_parked(record) and scenario.has_written_goal(record)
     low, high = view.vel_min[:, 0].tolist(), view.vel_max[:, 0].tolist()
     footprint = view.geometry
@@ -160,7 +177,7 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> GradedBody:
         record=record,
         static=record.static or kinematics is None,
         kinematics=kinematics,
-        behavior=None if options is None or kinematics is None else str(options.name),
+        behavior=None if options is None else str(options.name),
         options={} if options is None else options.model_dump(mode="json"),
         pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
         goals=[goal[:, 0].tolist() for goal in view.goals] if given and kinematics else [],
@@ -168,7 +185,8 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> GradedBody:
         radius=radius,
         box=None if radius is not None else _box(footprint),
         extent=(view.length, view.width),
-        **_limits(record.kinematics if kinematics else None, low, high),
+        ranges=_ranges(record.kinematics, low, high, acts) if kinematics else {},
+        avoided=options.target_roles if getattr(acts, "avoids", False) else None,
         sensors=[{**sensor.model_dump(mode="json"), "name": sensor.name} for sensor in record.sensors],
         color=_color(record.color),
         limits={"vel_min": low, "vel_max": high, "acce": view.acce[:, 0].tolist()},
@@ -181,24 +199,20 @@ def _is_disc(view: ObjectView) -> bool:
     return view.shape == "circle" or [part.name for part in parts] == ["circle"]
 
 
-def _limits(drive: Any, low: list[float], high: list[float]) -> dict[str, float | None]:
-    """Greatest speeds that the limits of the controls allow, and the greatest steering angle."""
-    none = dict.fromkeys(("forward", "backward", "sideways", "turn", "steer"))
-    if drive is None or not high:
-        return none
-    kinematics = str(drive.name)
-    limits: dict[str, float | None] = {**none, "forward": high[0], "backward": max(0.0, -low[0])}
-    if kinematics in _CROSSWISE and len(high) > 1:
-        limits["sideways"] = max(high[1], -low[1])
-    if kinematics == "acker" and len(high) > 1:
-        angles = [drive.psi_max] if drive.psi_max is not None else []
-        angles += [max(high[1], -low[1])] if drive.mode == "steer" else []
-        limits["steer"] = min(angles, default=None)
-    elif kinematics == "diff" and len(high) > 1:
-        limits["turn"] = max(high[1], -low[1])
-    elif kinematics == "omni_angular" and len(high) > 2:
-        limits["turn"] = max(high[2], -low[2])
-    return limits
+def _ranges(drive: Any, low: list[float], high: list[float], behavior: Any) -> dict[str, float]:
+    """What limits of controls, a drive and a behavior allow to each side."""
+    if not high:
+        return {}
+    speeds, turns = {"forward": high[0], "backward": -low[0]}, dict[str, float]()
+    if drive.speeds == 2:
+        speeds |= {"leftward": high[1], "rightward": -low[1]}
+    if drive.steered:
+        turns["steer_right"], turns["steer_left"] = drive.steering(low, high)
+    elif drive.speeds and drive.turns:
+        turns = {"turn_left": high[drive.speeds], "turn_right": -low[drive.speeds]}
+    most = behavior.top_speed_of_its_own() if isinstance(behavior, BehaviorOptions) else math.inf
+    ranges = {name: max(0.0, min(speed, most)) for name, speed in speeds.items()}
+    return ranges | {name: max(0.0, turn) for name, turn in turns.items() if turn < math.inf}
 
 
 def _color(color: Any) -> str | None:

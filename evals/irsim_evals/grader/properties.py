@@ -112,16 +112,30 @@ def _goal_of_world(component: int) -> Callable[[GradedScene, GradedBody], Any]:
     return lambda scene, body: None if body.goal is None else _share(scene, body.goal, component)
 
 
-def _limit(kinematics: tuple[str, ...], component: int, sign: int) -> Callable[[GradedScene, GradedBody], Any]:
-    """Greatest control of a component in one direction (1: forward, left; -1: backward, right)."""
+def _range(name: str) -> Callable[[GradedScene, GradedBody], Any]:
+    """The greatest value to one side of what a drive controls."""
+    return lambda _, body: body.ranges.get(name)
 
-    def of(_: GradedScene, body: GradedBody) -> float | None:
-        values = body.limits.get("vel_max" if sign > 0 else "vel_min", [])
-        if body.kinematics not in kinematics or len(values) <= component:
-            return None
-        return max(0.0, sign * values[component])
 
-    return of
+def _avoids(scene: GradedScene, body: GradedBody) -> bool:
+    """Whether its behavior avoids others, all of them or some that there are."""
+    roles = {"all", *(other.role for other in scene.bodies if other is not body)}
+    return body.avoided in roles
+
+
+def _wanders(_: GradedScene, body: GradedBody) -> bool:
+    return body.behavior is not None and body.record.wander
+
+
+def _loops(scene: GradedScene, body: GradedBody) -> bool:
+    """Whether it starts again after its last goal; random goals take precedence."""
+    return body.behavior is not None and body.record.loop and not _wanders(scene, body)
+
+
+def _wheelbase(_: GradedScene, body: GradedBody) -> float | None:
+    """As its drive counts it: 1 m for a drive that steers wheels and was given none."""
+    steered = body.kinematics is not None and getattr(body.record.kinematics, "steered", False)
+    return body.record.wheelbase or (1.0 if steered else body.record.wheelbase)
 
 
 def _local(_: GradedScene, body: GradedBody) -> str | None:
@@ -130,19 +144,13 @@ def _local(_: GradedScene, body: GradedBody) -> str | None:
     return str(local["name"]) if isinstance(local, dict) and "name" in local else None
 
 
-def _turn(scene: GradedScene, body: GradedBody, sign: int) -> float | None:
-    component = 1 if body.kinematics == "diff" else 2
-    limit: float | None = _limit(("diff", "omni_angular"), component, sign)(scene, body)
-    return limit
-
-
 PROPERTIES: dict[str, Property] = {
     "name": Property("name", "name", lambda _, body: body.name, "Its name."),
     "role": Property("name", "role", lambda _, body: body.role, "``robot`` or ``obstacle``."),
     "static": Property("flag", "static", lambda _, body: body.static, "Whether it never moves."),
     "passable": Property("flag", "unobstructed", lambda _, body: body.passable, "Whether others pass through it."),
     "kinematics": Property("name", "kinematics", lambda _, body: body.kinematics, "Name of its drive."),
-    "wheelbase": Property("size", "kinematics", lambda _, body: body.record.wheelbase, "Distance of a car's axles."),
+    "wheelbase": Property("size", "kinematics", _wheelbase, "Distance of a car's axles."),
     "shape": Property("name", "shape", lambda _, body: body.shape, "Such as ``square`` or ``line``."),
     "radius": Property("size", "shape", lambda _, body: body.radius, "Radius of a disc."),
     "long_side": Property("size", "shape", _side(0), "Longer side of a rectangle; length of a line."),
@@ -185,22 +193,20 @@ PROPERTIES: dict[str, Property] = {
         "name", "behavior", lambda _, body: sorted(body.options.items(), key=str), "Keys of its behavior."
     ),
     "local": Property("name", "behavior.local", _local, "Name of the behavior between corners of a planned path."),
-    "avoids": Property("flag", "behavior", lambda _, body: body.avoids, "Whether its behavior avoids others."),
-    "wander": Property("flag", "behavior.wander", lambda _, body: body.record.wander, "Whether its goals are random."),
-    "loop": Property(
-        "flag", "behavior.loop", lambda _, body: body.record.loop, "Whether it goes round its goals for ever."
-    ),
+    "avoids": Property("flag", "behavior", _avoids, "Whether its behavior avoids others."),
+    "wander": Property("flag", "behavior.wander", _wanders, "Whether its goals are random."),
+    "loop": Property("flag", "behavior.loop", _loops, "Whether it goes round its goals for ever."),
     "forward": Property("speed", "vel_max", lambda _, body: body.forward, "Greatest speed forwards."),
     "backward": Property("speed", "vel_min", lambda _, body: body.backward, "Greatest speed backwards, or 0."),
     "sideways": Property("speed", "vel_max", lambda _, body: body.sideways, "Greatest speed to either side."),
     "turn": Property("rate", "vel_max", lambda _, body: body.turn, "Greatest turn rate to either side."),
     "steer": Property("angle", "vel_max", lambda _, body: body.steer, "Greatest steering angle to either side."),
-    "leftward": Property("speed", "vel_max", _limit(("omni", "omni_angular"), 1, 1), "Greatest speed to its left."),
-    "rightward": Property("speed", "vel_min", _limit(("omni", "omni_angular"), 1, -1), "Greatest speed to its right."),
-    "turn_left": Property("rate", "vel_max", lambda s, b: _turn(s, b, 1), "Greatest turn rate to the left."),
-    "turn_right": Property("rate", "vel_min", lambda s, b: _turn(s, b, -1), "Greatest turn rate to the right."),
-    "steer_left": Property("angle", "vel_max", _limit(("acker",), 1, 1), "Greatest steering angle to the left."),
-    "steer_right": Property("angle", "vel_min", _limit(("acker",), 1, -1), "Greatest steering angle to the right."),
+    "leftward": Property("speed", "vel_max", _range("leftward"), "Greatest speed to its left."),
+    "rightward": Property("speed", "vel_min", _range("rightward"), "Greatest speed to its right."),
+    "turn_left": Property("rate", "vel_max", _range("turn_left"), "Greatest turn rate to the left."),
+    "turn_right": Property("rate", "vel_min", _range("turn_right"), "Greatest turn rate to the right."),
+    "steer_left": Property("angle", "vel_max", _range("steer_left"), "Greatest steering angle to the left."),
+    "steer_right": Property("angle", "vel_min", _range("steer_right"), "Greatest steering angle to the right."),
     "top_speed": Property("speed", "vel_max", lambda _, body: float(top_speed(body.record)), "Greatest speed at all."),
     "sensors": Property("count", "sensors", lambda _, body: len(body.sensors), "How many sensors it has."),
     "fov": Property("angle", "fov", lambda _, body: body.record.fov, "Angle of its field of view."),

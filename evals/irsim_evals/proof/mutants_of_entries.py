@@ -7,10 +7,13 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from irsim.options.registry import BEHAVIORS, KINEMATICS, Registry
 from irsim_evals.proof.operators import Change, Data, each_entry, entries, items_of, operator, with_entry
 
-_KINEMATICS = ("diff", "omni", "omni_angular", "acker")
-_BEHAVIORS = ("dash", "rvo", "orca", "sfm")
+
+def _built_in(registry: Registry) -> list[str]:
+    """Features that can drive a robot to its goal whatever else its entry says."""
+    return [f.name for f in registry.features() if f.kernel is not None and getattr(f.options, "needs_goal", True)]
 
 
 def _each_key(data: Data, change: Callable[[str, Data], None], what: str) -> Change:
@@ -63,7 +66,7 @@ def key_dropped(data: Data) -> Change:
 @operator
 def kinematics_swapped(data: Data) -> Change:
     """Another drive."""
-    for name in _KINEMATICS:
+    for name in _built_in(KINEMATICS):
 
         def change(entry: Data, name: str = name) -> Any:
             drive = entry.get("kinematics")
@@ -78,7 +81,7 @@ def kinematics_swapped(data: Data) -> Change:
 @operator
 def behavior_swapped(data: Data) -> Change:
     """Another behavior."""
-    for name in _BEHAVIORS:
+    for name in _built_in(BEHAVIORS):
 
         def change(entry: Data, name: str = name) -> Any:
             given = entry.get("behavior")

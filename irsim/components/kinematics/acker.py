@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
@@ -39,6 +41,14 @@ class Acker(KinematicsOptions):
     psi_max: Annotated[Radians, Field(gt=0)] | None = None
     """Largest steering angle; null leaves it to `vel_max` in `steer` mode and unlimited in `angular` mode, in which
     behaviors then steer up to 45 degrees. `dash` steers for mode `steer`: in the other one, `follow` arrives."""
+
+    def steering(self, low: Sequence[float], high: Sequence[float]) -> tuple[float, float]:
+        """Largest steering angles to the right and to the left [rad]; infinity without a limit."""
+        most = math.inf if self.psi_max is None else self.psi_max
+        if self.mode == "angular":  # there the second control is the rate at which the angle changes
+            return most, most
+        right, left = super().steering(low, high)
+        return min(right, most), min(left, most)
 
 
 KINEMATICS.register(Acker, kernel=core.AckerOptions)

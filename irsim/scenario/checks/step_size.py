@@ -92,7 +92,7 @@ def _top_yaw_rate(record: ObjectRecord) -> float:
     limit = float(max(abs(record.vel_min[drive.speeds]), abs(record.vel_max[drive.speeds])))
     if not drive.steered:
         return limit
-    psi = min(limit if drive.mode == "steer" else math.inf, drive.psi_max or math.inf)
+    psi = max(drive.steering(record.vel_min, record.vel_max))
     if psi >= math.pi / 2:
         return 0.0  # another check reports such an angle
     return float(top_speed(record) * math.tan(psi) / (record.wheelbase or 1.0))

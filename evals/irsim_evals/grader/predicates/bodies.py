@@ -197,12 +197,16 @@ class Sensor(OfBodies, ScenePredicate):
 def parameter(sensor: dict[str, Any], key: str) -> Any:
     """A parameter of a sensor; None if it has no such parameter."""
     offset = sensor.get("offset") or [0.0, 0.0, 0.0]
+    if key in ("noise", "std", "angle_std") and "noise" in sensor:  # each counts only with the others
+        std, angle_std = (sensor["noise"] and sensor.get(name, 0.0) for name in ("std", "angle_std"))
+        return {"noise": bool(std or angle_std), "std": float(std), "angle_std": float(angle_std)}[key]
     if key == "mounted":
         return math.hypot(*offset[:2])
     if key == "direction":
         return float(offset[2]) if len(offset) > 2 else 0.0
     if key == "spacing":
         number, angle = sensor.get("number"), sensor.get("angle_range")
-        return None if not number or number < 2 or angle is None else angle / (number - 1)
+        gaps = 0 if not number or angle is None else number - bool(sensor.get("endpoint", True))
+        return angle / gaps if gaps > 0 else None
     value = sensor.get(key)
     return math.nan if value is None and key in ("range_max",) else value

@@ -136,7 +136,7 @@ class Speed(OfBodies, EpisodePredicate):
             pose = episode.trace.pose[:, body.index]
             moved = np.hypot(*np.diff(pose[:, :2], axis=0).T) / episode.trace.step_time
             turned = np.abs(np.diff(np.unwrap(pose[:, 2]))) / episode.trace.step_time
-            everywhere = body.kinematics in ("omni", "omni_angular")
+            everywhere = "leftward" in body.ranges
             seen = {
                 "highest": float((moved if everywhere else along).max()),
                 "lowest": float(along.min()),

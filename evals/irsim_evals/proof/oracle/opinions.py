@@ -14,6 +14,7 @@ from typing import Any
 import yaml
 
 import irsim
+from irsim.options.registry import KINEMATICS
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.matching import TOLERANCES, Match
@@ -30,7 +31,6 @@ _BUILT_IN: dict[str, dict[str, Any]] = {
     "statics": {"static": True}, "solids": {"static": True, "passable": False},
 }  # fmt: skip
 """Selections that every case has."""
-_DRIVES = ("diff", "omni", "omni_angular", "acker")
 
 
 class _Unknown(Exception):
@@ -125,7 +125,7 @@ class _Look:
     def _drive(self, thing: Thing) -> Any:
         drive = thing.entry.get("kinematics")
         name = drive.get("name") if isinstance(drive, dict) else drive
-        if name is not None and name not in _DRIVES:
+        if name is not None and KINEMATICS.get(name) is None:
             raise _Unknown
         return None if thing.view.static else name
 

@@ -1,0 +1,126 @@
+"""Properties of bodies are what the built world does, whichever keys say it; names come from the registries."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from irsim.options.registry import BEHAVIORS, KINEMATICS
+from irsim_evals.grader.predicates.bodies import parameter
+from irsim_evals.grader.properties import value_of
+from tests.evals.conftest import ROOT, world
+
+CAR = "kinematics: {name: acker, wheelbase: 1%s}, vel_max: [1, %s], vel_min: [-1, %s]"
+PAIR = "{kinematics: {name: diff}, state: [%s, 5, 0], goal: [5, 9, 0], behavior: %s}"
+
+
+def of_robot(keys: str, *names: str) -> list[Any]:
+    """Properties of a robot with some keys."""
+    scene = world(f"robot: {{{keys}}}").scene(0)
+    return [value_of(scene, scene.bodies[0], name) for name in names]
+
+
+@pytest.mark.parametrize(
+    ("car", "left", "right"),
+    [
+        (CAR % ("", 0.4, -0.2), 0.4, 0.2),
+        (CAR % (", psi_max: 0.3", 0.5, -0.5), 0.3, 0.3),
+        (CAR % (", psi_max: 0.3", 0.5, 0.1), 0.3, 0.0),
+        (CAR % (", mode: angular, psi_max: 0.3", 0.5, -0.5), 0.3, 0.3),  # the second control is a rate there
+        (CAR % (", mode: angular", 0.5, -0.5), None, None),
+    ],
+)
+def test_a_steering_angle_is_what_limits_and_drive_leave(car: str, left: float | None, right: float | None) -> None:
+    found = of_robot(car, "steer_left", "steer_right", "steer")
+    assert found == pytest.approx([left, right, left])
+
+
+@pytest.mark.parametrize(
+    ("keys", "name", "value"),
+    [
+        ("kinematics: {name: omni_angular}, vel_max: [1, 2, 0.5], vel_min: [-1, -3, -0.7]", "turn", 0.7),
+        ("kinematics: {name: omni_angular}, vel_max: [1, 2, 0.5], vel_min: [-1, -3, -0.7]", "leftward", 2.0),
+        ("kinematics: {name: omni}, vel_max: [1, 2], vel_min: [-1, -3]", "turn_left", None),
+        ("kinematics: {name: diff}, vel_max: [2, 1], behavior: {name: orca, maxSpeed: 0.5}", "forward", 0.5),
+        ("kinematics: {name: diff}, vel_max: [2, 1], behavior: {name: follow, local: {name: orca, maxSpeed: 0.5}}",
+         "forward", 0.5),
+        ("kinematics: {name: acker}", "wheelbase", 1.0),  # as the drive counts it
+        ("kinematics: {name: diff}, behavior: {name: dash, loop: true, wander: true}", "loop", False),
+        ("kinematics: {name: diff}, static: true, behavior: {name: dash, wander: true}", "wander", False),
+        ("kinematics: {name: diff}, behavior: {name: dash}, group_behavior: {name: orca}", "behavior", "orca"),
+    ],
+)  # fmt: skip
+def test_a_property_is_what_the_built_world_does(keys: str, name: str, value: Any) -> None:
+    [found] = of_robot(keys, name)
+    assert found == (pytest.approx(value) if isinstance(value, float) else value)
+
+
+def _forms() -> list[tuple[str, bool]]:
+    """Each behavior alone, and as the local one of ``follow`` → whether it is declared to avoid others."""
+    options: list[Any] = [feature.options for feature in BEHAVIORS.features() if feature.origin == "built-in"]
+    names = {kind: kind.model_fields["name"].default for kind in options if kind.needs_goal}
+    alone = [(f"{{name: {name}}}", kind.avoids and kind.follows_paths) for kind, name in names.items()]
+    return alone + [
+        (f"{{name: follow, local: {{name: {name}}}}}", kind.avoids)
+        for kind, name in names.items()
+        if kind.follows_paths
+    ]
+
+
+@pytest.mark.parametrize(("behavior", "avoids"), _forms())
+def test_a_body_avoids_if_its_behavior_is_declared_to(behavior: str, avoids: bool) -> None:
+    """A planner avoids others if what drives it does."""
+    assert of_robot(f"kinematics: {{name: diff}}, behavior: {behavior}", "avoids") == [avoids]
+
+
+@pytest.mark.parametrize(("roles", "avoids"), [("all", True), ("robot", True), ("obstacle", False)])
+def test_a_body_that_is_told_to_avoid_nobody_there_is_avoids_nobody(roles: str, avoids: bool) -> None:
+    behavior = f"{{name: orca, target_roles: {roles}}}"
+    scene = world(f"robot: [{PAIR % (2, behavior)}, {PAIR % (8, behavior)}]").scene(0)
+    assert value_of(scene, scene.bodies[0], "avoids") == avoids
+
+
+@pytest.mark.parametrize(
+    ("keys", "name", "value"),
+    [
+        ("number: 4, angle_range: 2, endpoint: false", "spacing", 0.5),
+        ("number: 5, angle_range: 2", "spacing", 0.5),
+        ("std: 0.1", "std", 0.0),
+        ("std: 0.1, noise: true", "std", 0.1),
+        ("std: 0, noise: true", "noise", False),
+        ("std: 0, angle_std: 0.1, noise: true", "noise", True),
+    ],
+)
+def test_a_sensor_is_what_it_measures(keys: str, name: str, value: Any) -> None:
+    scene = world(f"robot: {{kinematics: {{name: diff}}, sensors: [{{name: lidar2d, {keys}}}]}}").scene(0)
+    [sensor] = scene.bodies[0].sensors
+    assert parameter(sensor, name) == pytest.approx(value)
+
+
+REGISTERED = {name for registry in (BEHAVIORS, KINEMATICS) for name in registry.names()} - {"static"}
+
+
+def _lists_of_names(path: Path) -> list[str]:
+    """Literal lists, tuples, sets and sums of conditions with two or more names of behaviors or drives."""
+    found = []
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, (ast.List, ast.Tuple, ast.Set)):
+            items = node.elts
+        elif isinstance(node, ast.Dict):
+            items = [key for key in node.keys if key is not None]
+        else:
+            continue
+        names = [item.value for item in items if isinstance(item, ast.Constant) and item.value in REGISTERED]
+        if len(names) > 1:
+            found.append(f"{path.relative_to(ROOT)}:{node.lineno}: {', '.join(names)}")
+    return found
+
+
+def test_no_list_of_behaviors_or_drives_stands_beside_the_registry() -> None:
+    """The rule-based reader translates words of a prompt to names, so it has its own."""
+    files = [*(ROOT / "evals/irsim_evals").rglob("*.py"), *(ROOT / "mcp_server/irsim_mcp").rglob("*.py")]
+    assert len(files) > 50
+    assert [line for path in files if "baselines" not in path.parts for line in _lists_of_names(path)] == []
