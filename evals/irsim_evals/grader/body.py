@@ -166,7 +166,7 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> GradedBody:
     """The body of an object."""
     record: Any = view.record
     kinematics = None if record.static or record.kinematics is None else str(record.kinematics.name)
-    options = (record.active_behavior if record.joined else record.behavior) if kinematics else None
+    options: Any = (record.active_behavior if record.joined else record.behavior) if kinematics else None
     acts = getattr(options, "local", options)
     given = not scenario.is_parked(record) and scenario.has_written_goal(record)
     low, high = view.vel_min[:, 0].tolist(), view.vel_max[:, 0].tolist()

@@ -206,7 +206,7 @@ def parameter(sensor: dict[str, Any], key: str) -> Any:
         return float(offset[2]) if len(offset) > 2 else 0.0
     if key == "spacing":
         number, angle = sensor.get("number"), sensor.get("angle_range")
-        gaps = 0 if not number or angle is None else number - bool(sensor.get("endpoint", True))
-        return angle / gaps if gaps > 0 else None
+        gaps = (number or 0) - bool(sensor.get("endpoint", True))
+        return angle / gaps if gaps > 0 and angle is not None else None
     value = sensor.get(key)
     return math.nan if value is None and key in ("range_max",) else value
