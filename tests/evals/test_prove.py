@@ -8,10 +8,14 @@ from typing import Any
 
 import pytest
 
+from irsim_evals.cases.store import case_of
+from irsim_evals.grader import grade as grade_module
+from irsim_evals.grader.artefact import Answer
+from irsim_evals.grader.grade import grade
 from irsim_evals.grader.limited import LimitError, run_limited
 from irsim_evals.proof import prove as proof_module
 from irsim_evals.proof.prove import prove, tried
-from tests.evals.conftest import irsim_evals
+from tests.evals.conftest import RIGHT, irsim_evals
 
 
 def test_limits_count_processor_time() -> None:
@@ -56,3 +60,21 @@ def test_the_command_lists_trials_without_a_verdict_and_fails() -> None:
     assert "mutant" in line
     assert line.endswith("the grading took more than 120 s of processor time")
     assert "accepted" not in line
+
+
+def test_a_verdict_alone_ends_at_the_first_assertion_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_episode(*_: Any) -> Any:
+        raise AssertionError("an episode")
+
+    case = case_of("pub-01")
+    right = Answer("right", {"scenario.yaml": RIGHT})
+    assert grade(case, right, whole=False).strict
+    with monkeypatch.context() as patch:
+        patch.setattr(grade_module, "run_episode", no_episode)
+        small = grade(case, Answer("small", {"scenario.yaml": RIGHT.replace("0.35", "0.2")}), whole=False)
+    assert not small.strict
+    assert [one.assertion for one in small.failed()] == ["robot"]
+    late = grade(case, Answer("late", {"scenario.yaml": f"{RIGHT}  vel_max: [0.1, 0.1]\n"}), whole=False)
+    assert not late.strict
+    assert late.outcomes[-1].assertion == "arrives"
+    assert {one.assertion for one in grade(case, right).outcomes} >= {one.assertion for one in late.outcomes}

@@ -9,6 +9,7 @@ from __future__ import annotations
 import tempfile
 import time
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -36,23 +37,56 @@ class _Stop(Exception):
     """Nothing after this stage can be observed."""
 
 
-def grade(instance: Instance, answer: Answer) -> Verdict:
-    """Grade an answer. Never raises: whatever goes wrong is a failed assertion."""
+class _Decided(Exception):
+    """An assertion that is not soft does not hold, and no more than that is asked."""
+
+
+class _UntilDecided(list[Outcome]):
+    """Outcomes up to the first that decides the verdict."""
+
+    def append(self, outcome: Outcome) -> None:
+        super().append(outcome)
+        if not (outcome.passed or outcome.soft):
+            raise _Decided
+
+    def __iadd__(self, outcomes: Iterable[Outcome]) -> _UntilDecided:  # type: ignore[override, misc]
+        for outcome in outcomes:
+            self.append(outcome)
+        return self
+
+
+def grade(instance: Instance, answer: Answer, *, whole: bool = True) -> Verdict:
+    """Grade an answer. Never raises: whatever goes wrong is a failed assertion.
+
+    Args:
+        instance: The case.
+        answer: The answer.
+        whole: Whether every assertion is looked at; otherwise only whether all hold, so that the grading ends at the
+            first that does not, and what needs episodes comes last.
+    """
     begin = time.perf_counter()
-    outcomes: list[Outcome] = []
+    outcomes: list[Outcome] = [] if whole else _UntilDecided()
     built = False
     files = dict(answer.files)
     workplace = tempfile.TemporaryDirectory(prefix="irsim-evals-", ignore_cleanup_errors=True)
     try:
-        material, built = _open(instance, answer, outcomes, Path(workplace.name))
+        material, built = _open(instance, answer, outcomes, Path(workplace.name), whole)
         if built:
-            _sanity(instance, material, outcomes)
+            _sanity(instance, material, outcomes, moves=whole)
         _assertions(instance, material, built, outcomes)
+        if built:
+            if not whole:
+                outcomes.append(_moves(instance, material))
+            for plan in instance.case.episodes:
+                _episodes(plan, material, outcomes, whole)
+    except _Decided:
+        pass
     except _Stop:
         _ungraded(instance, outcomes)
     except Exception as error:  # a fault of the grader must not pass for one of the answer: it is named as such
-        outcomes.append(_fault("grader", "load", error))
-        _ungraded(instance, outcomes)
+        with suppress(_Decided):
+            outcomes.append(_fault("grader", "load", error))
+            _ungraded(instance, outcomes)
     finally:
         workplace.cleanup()
     return _verdict(instance, answer, outcomes, built, files, time.perf_counter() - begin)
@@ -70,8 +104,10 @@ def failed_verdict(instance: Instance, answer: Answer | None, assertion: str, st
     return _verdict(instance, answer or Answer(""), outcomes, False, files, 0.0)
 
 
-def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace: Path) -> tuple[Material, bool]:
-    """Find, read and check the scenario."""
+def _open(
+    instance: Instance, answer: Answer, outcomes: list[Outcome], workplace: Path, step: bool
+) -> tuple[Material, bool]:
+    """Find, read and check the scenario, and make the first steps or leave them to the episodes."""
     case = instance.case
     named_text = find_scenario(answer, case.files)
     if case.python != "any":
@@ -129,8 +165,9 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace
     material.scenario, material.document, material.findings = opened.scenario, document, opened.findings
     try:
         scene = material.scene(case.seeds[0])
-        probe = run_episode(material.scenario, case.seeds[0], _FIRST_STEPS * float(scene.world.step_time))
-        _add(outcomes, "loads", "load", True, "a world that can be stepped", f"{len(probe.trace) - 1} steps")
+        if step:
+            run_episode(material.scenario, case.seeds[0], _FIRST_STEPS * float(scene.world.step_time))
+        _add(outcomes, "loads", "load", True, "a world that can be stepped", f"{_FIRST_STEPS} steps")
     except IrsimError as error:
         _add(outcomes, "loads", "load", False, "a world that can be stepped", str(error).splitlines()[0])
         raise _Stop from None
@@ -150,14 +187,19 @@ def _has_several(case: Any) -> bool:
     return any(item.file or item.predicate.name in ("every_scenario", "comparison") for item in case.check)
 
 
-def _sanity(instance: Instance, material: Material, outcomes: list[Outcome]) -> None:
+def _sanity(instance: Instance, material: Material, outcomes: list[Outcome], moves: bool) -> None:
     case = instance.case
     for seed in case.seeds:
         results = check_scene(material.scene(seed), overlap=not case.overlap)
         outcomes += [item for item in results if not item.passed] if seed != case.seeds[0] else results
     if material.scenario is not None:
         outcomes.append(check_goals(material.scene(case.seeds[0])))
-        outcomes.append(check_moves(run_episode(material.scenario, case.seeds[0], _MOVING_TIME)))
+        if moves:
+            outcomes.append(_moves(instance, material))
+
+
+def _moves(instance: Instance, material: Material) -> Outcome:
+    return check_moves(run_episode(material.driven_by(None), instance.case.seeds[0], _MOVING_TIME))
 
 
 def _assertions(instance: Instance, material: Material, built: bool, outcomes: list[Outcome]) -> None:
@@ -171,9 +213,6 @@ def _assertions(instance: Instance, material: Material, built: bool, outcomes: l
             _observe(outcomes, item, (_in_scene(material, item, seed) for seed in case.seeds))
         else:
             _observe(outcomes, item, [lambda item=item: item.predicate.observe(material.other(item.file))])
-    if built:
-        for plan in case.episodes:
-            _episodes(plan, material, outcomes)
 
 
 def _in_scene(material: Material, item: Any, seed: int) -> Any:
@@ -186,7 +225,7 @@ def _in_scene(material: Material, item: Any, seed: int) -> Any:
     return look
 
 
-def _episodes(plan: Any, material: Material, outcomes: list[Outcome]) -> None:
+def _episodes(plan: Any, material: Material, outcomes: list[Outcome], whole: bool) -> None:
     """Run the episodes of a plan one after the other, so that only one is held in memory."""
     seen: dict[str, list[Observation]] = {item.id: [] for item in plan.check}
     times = tuple(sorted({t for item in plan.check for t in item.predicate.scan_times()}))
@@ -207,6 +246,8 @@ def _episodes(plan: Any, material: Material, outcomes: list[Outcome]) -> None:
             look = _guarded(lambda item=item, episode=episode: item.predicate.observe(material, episode))
             look.seed = seed if look.seed is None else look.seed
             seen[item.id].append(look)
+            if not (look.passed or item.soft or whole) and plan.share == 1:
+                outcomes.append(_outcome(item, look, False))
     for item in plan.check:
         looks = seen[item.id]
         bad = [look for look in looks if not look.passed]

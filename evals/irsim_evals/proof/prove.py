@@ -118,9 +118,10 @@ def tried(trial: Trial, second: bool) -> tuple[Kind, Any, dict[str, bool]] | Non
     kind = kind_of(trial) if trial.kind == "mutant" else trial.kind
     if kind is None:
         return None
-    verdict = grade(trial.instance, trial.answer)
-    loads = any(outcome.assertion == "loads" and outcome.passed for outcome in verdict.outcomes)
-    return kind, verdict.model_dump(mode="json"), opinions(trial.instance, trial.answer) if second and loads else {}
+    verdict = grade(trial.instance, trial.answer, whole=False)
+    reached = {outcome.assertion for outcome in verdict.outcomes if outcome.observed != NOT_REACHED}
+    judged = opinions(trial.instance, trial.answer, reached) if second and "loads" in reached else {}
+    return kind, verdict.model_dump(mode="json"), judged
 
 
 def _note(proof: Proof, trial: Trial, result: Any) -> None:

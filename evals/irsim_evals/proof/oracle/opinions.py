@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import logging
 import math
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -37,12 +38,13 @@ class _Unknown(Exception):
     """The oracle does not understand this."""
 
 
-def opinions(instance: Instance, answer: Answer) -> dict[str, bool]:
+def opinions(instance: Instance, answer: Answer, wanted: Collection[str]) -> dict[str, bool]:
     """Assertion → whether it holds, for each one that the oracle understands.
 
     Args:
         instance: The case.
         answer: An answer with a scenario that can be loaded; for any other there are no opinions.
+        wanted: Assertions to judge.
     """
     scenario = find_scenario(answer, instance.case.files)
     if scenario is None or answer.blobs:
@@ -53,14 +55,15 @@ def opinions(instance: Instance, answer: Answer) -> dict[str, bool]:
         path = Path(folder, "scenario.yaml")
         path.write_text(scenario[1], encoding="utf-8")
         data = yaml.safe_load(scenario[1])
+        looks = functools.cache(partial(_looks, path, data, case.seeds, case.select))
         for item in case.check:
-            if item.predicate.name in JUDGED and item.predicate.subject == "scene":
-                _add(judged, item, partial(_looks, path, data, case.seeds, case.select))
+            if item.id in wanted and item.predicate.name in JUDGED and item.predicate.subject == "scene":
+                _add(judged, item, looks)
         for plan in case.episodes:
             if plan.behavior is not None or plan.speed or plan.share != 1:
                 continue
             for item in plan.check:
-                if item.predicate.name in JUDGED:
+                if item.id in wanted and item.predicate.name in JUDGED:
                     _add(judged, item, partial(_looks, path, data, plan.seeds, case.select), plan.seconds)
     return judged
 
