@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
+from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.diagnostics.diagnostic import Diagnostic, by_severity, format_path
 
-__all__ = ["format_diagnostic", "format_diagnostics"]
+__all__ = ["error_codes", "format_diagnostic", "format_diagnostics"]
 
 _COLORS = {"error": "\033[1;31m", "warning": "\033[1;33m", "hint": "\033[1;36m"}
 _BOLD, _DIM, _RESET = "\033[1m", "\033[2m", "\033[0m"
@@ -15,6 +17,11 @@ _MAX_LINE_WIDTH = 160
 """Characters of a quoted line."""
 _MAX_ALLOWED = 24
 """Allowed values that are listed."""
+_CODE = r"[a-z]+(?:-[a-z]+)*"
+_ERROR = re.compile(
+    rf"""\berror ({_CODE})\b|^({_CODE}): |\bline \d+ ({_CODE}):|"code": ?"({_CODE})", ?"severity": ?"error\"""", re.M
+)
+"""An error in a report for people, in one line of a tool, in a list of errors in one line, and in JSON."""
 
 
 def format_diagnostics(diagnostics: Sequence[Diagnostic], text: str | None = None, color: bool = False) -> str:
@@ -96,3 +103,9 @@ def _allowed_text(allowed: Sequence[str] | str) -> str:
         return allowed
     shown = ", ".join(str(item) for item in allowed[:_MAX_ALLOWED])
     return shown + (f", and {len(allowed) - _MAX_ALLOWED} more" if len(allowed) > _MAX_ALLOWED else "")
+
+
+def error_codes(text: str) -> list[str]:
+    """The codes of the errors that a report or an answer of a tool names, each once."""
+    named = (next(filter(None, match.groups())) for match in _ERROR.finditer(text))
+    return list(dict.fromkeys(code for code in named if code in CODES or code in TOOL_CODES))

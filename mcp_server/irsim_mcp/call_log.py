@@ -18,6 +18,8 @@ from typing import Any
 
 from mcp.types import CallToolResult, ImageContent, InputRequiredResult, TextContent
 
+from irsim.diagnostics.report import error_codes
+
 __all__ = ["CallLog", "CallLogRefused"]
 
 _CHARACTERS_PER_TOKEN = 4
@@ -82,6 +84,7 @@ class CallLog:
                 "answer_characters": characters,
                 "pictures": pictures,
                 "tokens": math.ceil(tokens),
+                "codes": error_codes(_text(answer)),
             }
             self._append(_as_json(line).encode("utf-8", "backslashreplace"))
 
@@ -133,6 +136,13 @@ def _sizes(answer: object) -> tuple[int, list[tuple[int, int]]]:
     if not isinstance(answer, CallToolResult):
         return (len(str(answer)) if isinstance(answer, Exception) else 0), []
     return _content_sizes(answer.content)
+
+
+def _text(answer: object) -> str:
+    """The texts of an answer, or of the exception in its place."""
+    content = answer.content if isinstance(answer, CallToolResult) else ()
+    texts = [block.text for block in content if isinstance(block, TextContent)]
+    return "\n".join(texts) if texts or not isinstance(answer, Exception) else str(answer)
 
 
 def _content_sizes(content: Sequence[Any]) -> tuple[int, list[tuple[int, int]]]:

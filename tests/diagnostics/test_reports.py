@@ -10,7 +10,7 @@ import pytest
 import irsim
 from irsim.diagnostics.codes import CODES
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest
-from irsim.diagnostics.report import format_diagnostics
+from irsim.diagnostics.report import error_codes, format_diagnostics
 from irsim.scenario.read import read
 
 PACKAGE = Path(irsim.__file__).parent
@@ -83,3 +83,16 @@ def test_the_word_that_was_meant_is_found_in_any_case(word: object, meant: str |
 def test_places_are_told_as_in_python() -> None:
     assert format_path(("robot", 0, "shape", "vertices", 3, 1)) == "robot[0].shape.vertices[3][1]"
     assert format_path(()) == "(document)"
+
+
+def test_the_codes_of_errors_are_found_in_every_form_of_a_report() -> None:
+    forms = [
+        "invalid: 1 error\n1. error unknown-key at robot.x line 7: 'x' is not a key of 'robot'.",
+        "a.yaml:7:3  error unknown-key  robot.x",
+        "invalid-scenario: 1 error: robot.x line 7 unknown-key: 'x' is not a key of 'robot' (scenario_path).",
+        '{"findings":[{"code":"unknown-key","severity":"error"},{"code":"stacked","severity":"warning"}]}',
+        "error: unknown-topic: 'blorp' is not a topic",
+        "collision: 'robot' hit 'wall'\n2. warning stacked at robot",
+    ]
+    found = [error_codes(form) for form in forms]
+    assert found == [["unknown-key"], ["unknown-key"], ["invalid-scenario", "unknown-key"], ["unknown-key"], [], []]

@@ -45,7 +45,7 @@ def test_the_table_shows_verdicts_and_costs_and_then_what_failed(exported: Path)
     assert [*second.split()[:2], *second.split()[-3:]] == ["pub-19", "FAIL", "?", "?", "?"]
     assert "\npub-19\n  range: expected only robot[0].sensors[0].range_max differs" in done.output
     assert "note: calls.jsonl: lines that do not record a call and are left out: 1 of 3" in done.output
-    assert done.output.endswith("1 of 2 cases pass\n")
+    assert "\n1 of 2 cases pass\n  1 parameters: " in done.output
     assert irsim_evals("grade", exported / "pub-01").exit_code == 0
 
 

@@ -73,7 +73,7 @@ def test_report_writes_three_files(tmp_path: Path) -> None:
     assert "skill: 50 % of 2 cases pass (9 to 91)" in done.output
     text = (tmp_path / "out" / "report.md").read_text()
     assert "| skill | 2 | 50 % | 9 % to 91 % |" in text
-    assert "- two: size: expected radius 0.2; observed radius 0.3" in text
+    assert "- two, parameters: size: expected radius 0.2; observed radius 0.3" in text
     words = Elements((tmp_path / "out" / "report.html").read_text()).words
     assert "Prompt of two" in words
     assert "radius 0.3" in words

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.one_python
 
 KEYS = [
     "call", "at_s", "took_s", "tool", "arguments", "error", "argument_characters", "answer_characters", "pictures",
-    "tokens",
+    "tokens", "codes",
 ]  # fmt: skip
 SECRET = "a-token-that-must-stay-secret"
 
@@ -52,6 +52,7 @@ async def test_each_call_is_a_line_with_its_cost(workspace: Path, tmp_path: Path
     assert [line["call"] for line in lines] == [1, 2, 3, 4]
     assert [line["tool"] for line in lines] == ["validate_scenario", "validate_scenario", "validate", "render_snapshot"]
     assert [line["error"] for line in lines] == [False, True, True, False]
+    assert [line["codes"] for line in lines] == [[], ["unknown-argument"], ["unknown-tool"], []]
     assert lines[0]["arguments"] == {"scenario_yaml": ROOM}
     assert lines[1]["arguments"] == {"scenario": "é\u2028\n"}
     for line, result in zip(lines, (good, bad, unknown, drawn), strict=True):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from irsim.cli.output import console
 from irsim.common.text import clean
 from irsim_evals.grader.outcome import NOT_REACHED, Cost, Outcome, Verdict
+from irsim_evals.report.failures import MEANINGS, category_of, counted
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -46,6 +47,8 @@ def show_verdicts(verdicts: Sequence[Verdict], json_output: bool) -> None:
             out.print(f"  note: {clean(note, _MAX_SHOWN)}", soft_wrap=True)
     passed = sum(verdict.strict for verdict in verdicts)
     out.print(f"\n{passed} of {len(verdicts)} {'case passes' if len(verdicts) == 1 else 'cases pass'}")
+    for name, number in counted(map(category_of, verdicts)).items():
+        out.print(f"{number:>3} {name}: {MEANINGS[name]}", soft_wrap=True)
 
 
 def _print_table(verdicts: Sequence[Verdict], out: Console) -> None:

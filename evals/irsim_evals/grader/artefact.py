@@ -11,7 +11,7 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from irsim.common.records import ContentError, FileError, read_bytes, read_json
-from irsim_evals.grader.outcome import Cost
+from irsim_evals.grader.outcome import Cost, Step
 
 __all__ = [
     "BINARY", "CALLS_FILE", "Answer", "ArtefactError", "cost_of", "find_scenario", "from_folder", "rivals",
@@ -42,6 +42,8 @@ CALLS_FILE = "calls.jsonl"
 """Name under which the file is found in the folder of a case."""
 _MAX_LOG_BYTES = 16_000_000
 """Size of a file that is read."""
+_MAX_STEPS = 200
+"""Number of calls that results keep."""
 
 
 @dataclass(frozen=True)
@@ -186,6 +188,7 @@ class _Call(BaseModel):
     tool: str
     error: bool
     tokens: Annotated[int, Field(ge=0, le=10**9)]
+    codes: list[str] = []
 
 
 def cost_of(path: Path) -> Cost:
@@ -208,6 +211,7 @@ def cost_of(path: Path) -> Cost:
         errors=sum(call.error for call in calls),
         tokens=sum(call.tokens for call in calls),
         notes=notes if left_out else [],
+        steps=[Step(tool=call.tool, error=call.error, codes=call.codes) for call in calls[-_MAX_STEPS:]],
     )
 
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-__all__ = ["NOT_REACHED", "STAGES", "Cost", "Mark", "Outcome", "Record", "Stage", "Verdict", "name_of"]
+__all__ = ["NOT_REACHED", "STAGES", "Cost", "Mark", "Outcome", "Record", "Stage", "Step", "Verdict", "name_of"]
 
 Stage = Literal["parse", "schema", "load", "sane", "facts", "relations", "behavior", "edits", "reply"]
 STAGES: tuple[Stage, ...] = ("parse", "schema", "load", "sane", "facts", "relations", "behavior", "edits", "reply")
@@ -53,6 +53,16 @@ class Outcome(Record):
     marks: list[Mark] = []
 
 
+class Step(Record):
+    """One call of a tool."""
+
+    tool: str
+    """Name of the tool; of the command line with the command: ``irsim validate``."""
+    error: bool = False
+    codes: list[str] = []
+    """Codes of the errors that the answer names."""
+
+
 class Cost(Record):
     """Cost of an answer, as far as it is known."""
 
@@ -71,6 +81,8 @@ class Cost(Record):
     """Tokens that the model read from its cache or wrote to it."""
     dollars: float | None = None
     """Price [US dollar], where the model's price is known."""
+    steps: list[Step] = []
+    """The calls in their order, where a log has them; the last ones of very many."""
     notes: list[str] = []
     """Notes about costs that could not be counted, and why."""
 

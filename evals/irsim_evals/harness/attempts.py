@@ -11,9 +11,10 @@ from typing import Any
 from inspect_ai.model import ChatCompletionChoice, ChatMessageAssistant, ModelOutput, ModelUsage, get_model
 from inspect_ai.tool import ToolCall
 
+from irsim.diagnostics.report import error_codes
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.grade import failed_verdict
-from irsim_evals.grader.outcome import Cost, Verdict
+from irsim_evals.grader.outcome import Cost, Step, Verdict
 from irsim_evals.harness.recording import (
     Attempt,
     Call,
@@ -180,7 +181,14 @@ def _cost_of(sample: Any, work: Work | None) -> Cost:
         output_tokens=total("output_tokens"),
         cache_tokens=total("input_tokens_cache_write", "input_tokens_cache_read"),
         dollars=None if not paid or None in paid else round(sum(paid), 6),
+        steps=[_step(message) for message in sample.messages if message.role == "tool"],
     )
+
+
+def _step(message: Any) -> Step:
+    """One call of a tool, by its answer."""
+    text = message.error.message if message.error is not None else str(message.text)
+    return Step(tool=message.function or "", error=message.error is not None, codes=error_codes(text))
 
 
 def replayed_model(attempt: Attempt, model: str, folder: Path) -> Any:

@@ -50,6 +50,7 @@ def aggregates(content: Content) -> dict[str, Any]:
         "categories": _table(content.categories, names),
         "levels": _table(content.levels, names),
         "comparisons": [comparison_data(one) for one in content.comparisons],
+        "failures": content.failures,
         "proof": None
         if content.proof is None
         else [{"what": name, "wrong": wrong, **share._asdict()} for name, wrong, share in content.proof.totals()],

@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 
 from irsim_evals.grader.outcome import NOT_REACHED, Outcome
 from irsim_evals.report.content import Content
+from irsim_evals.report.failures import category_of
 from irsim_evals.report.html_text import UNITS, code, difference, escaped, lines_of, number, percent, prose, slug
 from irsim_evals.report.load import Asked
 from irsim_evals.report.marked_picture import NumberedMark, marked_picture
@@ -75,9 +76,8 @@ def _trial(content: Content, place: int, several: Collection[str]) -> str:
     scenario = main_file(trial, asked)
     paths = {one.yaml_path for one in failed if one.yaml_path}
     lines = lines_of(scenario[1], paths) if scenario else {}
-    about = [f"{percent(verdict.rate)} of the requirements", _cost(trial)]
-    if not verdict.strict:
-        about.insert(1, f"fails at {verdict.reached}")
+    about = [f"{percent(verdict.rate)} of the requirements", "" if verdict.strict else f"fails at {verdict.reached}"]
+    about += [category_of(verdict, trial.ended) or "", _cost(trial)]
     held = [one for one in verdict.outcomes if one.passed]
     reached = [one for one in failed if one.observed != NOT_REACHED]
     body = _verdicts(reached, numbers, lines, scenario[0] if scenario else "")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from irsim_evals.report.comparison import Comparison, compare
+from irsim_evals.report.failures import Category, category_of, counted
 from irsim_evals.report.load import Asked, Proof, asked_of
 from irsim_evals.report.pictures import Gallery, draw_trials
 from irsim_evals.report.summary import ArmSummary, Table, arms_of, summarize, table_by
@@ -26,6 +27,7 @@ class Content:
         arms: Numbers of each arm.
         categories, levels: Passes by category and by level.
         comparisons: Each arm compared with the one before.
+        failures: Arm → category of failure → number of attempts.
         proof: Table of the proof of the grader, if it was given.
         gallery: Pictures; None if none are wanted.
     """
@@ -37,6 +39,7 @@ class Content:
     categories: Table
     levels: Table
     comparisons: list[Comparison]
+    failures: dict[str, dict[Category, int]]
     proof: Proof | None = None
     gallery: Gallery | None = None
 
@@ -70,6 +73,9 @@ def content_of(
         comparisons=[
             comparison for a, b in pairwise(names) if (comparison := compare(by_arm[a], by_arm[b], a, b)).pairs
         ],
+        failures={
+            name: counted(category_of(one.verdict, one.ended) for one in attempts) for name, attempts in by_arm.items()
+        },
         proof=proof,
         gallery=draw_trials(trials, asked, progress) if pictures else None,
     )

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from irsim.common.text import clean
 from irsim_evals.report.content import Content
+from irsim_evals.report.failures import category_of, failure_rows
 from irsim_evals.report.html_text import UNITS, number, percent
 from irsim_evals.report.summary import ArmSummary, Cell, Table
 from irsim_evals.results import Trial
@@ -28,6 +29,14 @@ def markdown(content: Content) -> str:
         *(_safe(one.sentence, 600) for one in content.comparisons),
         "## Where answers fail",
         _funnel(content.arms),
+        *(
+            [
+                "## Kinds of failures",
+                _rows(["main reason", *map(_safe, content.failures), "which means"], failure_rows(content.failures)),
+            ]
+            if any(content.failures.values())
+            else []
+        ),
         "## By category",
         _table(content.categories, content.arms, "category"),
         "## By level",
@@ -85,7 +94,8 @@ def _failed(trials: Sequence[Trial]) -> str:
         one = next((o for o in trial.verdict.failed() if not o.soft), None)
         why = f": {_safe(one.assertion)}: expected {_safe(one.expected)}; observed {_safe(one.observed)}" if one else ""
         attempt = f" (attempt {trial.number})" if trial.number > 1 else ""
-        lines.append(f"- {_safe(trial.verdict.name)}{attempt}{why}")
+        kind = category_of(trial.verdict, trial.ended)
+        lines.append(f"- {_safe(trial.verdict.name)}{attempt}, {kind}{why}")
     if len(trials) > _MAX_FAILED:
         lines.append(f"- and {len(trials) - _MAX_FAILED} more")
     return "\n".join(lines)

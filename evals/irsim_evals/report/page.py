@@ -11,6 +11,7 @@ from pathlib import Path
 from irsim.common.pages import one_page
 from irsim_evals.report.case_section import case_sections
 from irsim_evals.report.content import Content
+from irsim_evals.report.failures import failure_rows
 from irsim_evals.report.html_text import UNITS, escaped, number, percent
 from irsim_evals.report.load import Proof
 from irsim_evals.report.summary import ArmSummary, Cell, Table
@@ -63,6 +64,7 @@ def sections(content: Content) -> str:
     parts = [
         _section("Passed", _headline(content.arms)),
         _section("Where answers fail", _funnel(content.arms)),
+        *([_section("Kinds of failures", _kinds(content))] if any(content.failures.values()) else []),
         _section("By category", _table(content.categories, content.arms, "category")),
         _section("By level", _table(content.levels, content.arms, "level") + _note("1 is easy, 4 is hard.")),
     ]
@@ -125,6 +127,11 @@ def _funnel(arms: Sequence[ArmSummary]) -> str:
         "the schema, loads, is sane (nothing overlaps, everything moves), and has the facts, the relations and the "
         "behavior that were asked for; then come edits of a given file and the reply."
     )
+
+
+def _kinds(content: Content) -> str:
+    heads = ["main reason", *(escaped(arm, 60) for arm in content.failures), "which means"]
+    return _plain(heads, failure_rows(content.failures))
 
 
 def _table(table: Table, arms: Sequence[ArmSummary], name: str) -> str:
