@@ -11,7 +11,7 @@ from rich.text import Text
 from irsim.cli.options import Json
 from irsim.cli.output import console, print_json
 from irsim.lookup import Answer, Answers, as_brief_text, lookup, lookup_several, topics_of
-from irsim.lookup.answer import facts
+from irsim.lookup.answer import facts, said_once
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
@@ -36,7 +36,8 @@ def describe(
     """Explain a key, a component, a template, a metric or an error code. Without a topic, list all topics."""
     asked = " ".join(topic or ())
     if len(topics := topics_of(asked)) > 1:
-        _show_several(lookup_several(topics), json_output)
+        answers = lookup_several(topics)
+        _show_several(answers if json_output else said_once(topics, answers), json_output)
         return
     answer = lookup(asked)
     if json_output:

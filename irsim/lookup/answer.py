@@ -24,6 +24,7 @@ __all__ = [
     "key_list",
     "key_table",
     "plain_table",
+    "said_once",
 ]
 
 
@@ -152,6 +153,29 @@ def as_brief_text(answer: Answer) -> str:
             f"For example: {answer.example}" if "\n" not in answer.example else f"For example:\n{answer.example}"
         )
     return "\n".join(lines)
+
+
+def said_once(topics: Sequence[str], answers: Sequence[Answer | TopicError]) -> list[Answer | TopicError]:
+    """Shorten the answers to several topics: what one of them has said, a later one only refers to.
+
+    Args:
+        topics: The topics.
+        answers: The answer to each.
+    """
+    told, texts, short = set[str](), set[str](), list[Answer | TopicError]()
+    for topic, one in zip(topics, answers, strict=True):
+        if isinstance(one, Answer) and one.topic in told:
+            one = Answer(topic=one.topic, kind=one.kind, title=f"{clean(topic)}: see {one.topic} above")
+        elif isinstance(one, Answer):
+            told.add(one.topic)
+            one = one.model_copy(update={"text": "" if one.text in texts else one.text})
+            texts.add(one.text)
+            if one.best is not None and one.best.topic in told:
+                one = one.model_copy(update={"best": None})
+            elif one.best is not None:
+                told.add(one.best.topic)
+        short.append(one)
+    return short
 
 
 def _brief(answer: Answer) -> str:

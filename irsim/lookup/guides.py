@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from irsim.lookup.units import UNIT_TABLE
+
 __all__ = ["GUIDES", "Guide"]
 
 
@@ -164,11 +166,11 @@ GUIDES: dict[str, Guide] = {
     "units": Guide(
         "metres, seconds, radians; x to the right, y up",
         "Lengths are in m, times in s, speeds in m/s, angles in radians, masses in kg. Heading 0 is +x (east), growing "
-        "counter-clockwise: north 1.5708, west 3.1416, south -1.5708. 30 degrees are 0.5236, 45: 0.7854, 90: 1.5708, "
-        "360: 6.28318. The lower left corner of the world is (0, 0) unless world.offset moves it; objects do not move "
-        "with it. A larger width or height extends the world at the right and at the top.",
+        f"counter-clockwise: north 1.5708, west 3.1416, south -1.5708. {UNIT_TABLE}. `irsim describe '12 ft'` (lookup, "
+        "topic: 12 ft) converts any of them. The lower left corner of the world is (0, 0) unless world.offset moves "
+        "it; objects do not move with it. A larger width or height extends the world at the right and at the top.",
         None,
-        ("unit", "radians", "radian", "degrees", "degree", "metres", "meters", "coordinates", "angle", "heading"),
+        ("unit", "conversion", "radians", "radian", "metres", "meters", "coordinates", "angle", "heading"),
     ),
     "avoidance": Guide(
         "what each behavior avoids",
@@ -252,11 +254,11 @@ GUIDES: dict[str, Guide] = {
         None,
         (
             *("limitations", "not possible", "impossible", "unsupported", "not simulated", "3d", "z", "altitude"),
-            *("elevation", "ceiling", "stairs", "stair", "stairway", "ramp", "slope", "hill", "terrain", "bridge"),
-            *("fly", "flying", "flight", "drone", "drones", "uav", "quadcopter", "aerial", "jump", "climb", "elevator"),
+            *("elevation", "ceiling", "bridge", "jump", "climb"),
             *("delay", "delayed", "start_time", "start time", "stagger", "staggered", "spawn", "appear", "disappear"),
-            *("schedule", "timer", "weather", "rain", "wind", "snow", "ice", "slippery", "traffic light"),
-            *("traffic lights", "priority", "right of way", "battery", "camera", "gripper", "underwater"),
+            *("schedule", "timer", "weather", "rain", "wind", "snow", "traffic light"),
+            *("traffic lights", "priority", "right of way", "battery", "camera", "underwater"),
+            *("ampel", "semáforo", "红绿灯"),
             *("cameras", "depth camera", "rgb camera", "imu", "gps", "boat", "ship", "submarine"),
         ),
     ),
@@ -272,7 +274,7 @@ GUIDES: dict[str, Guide] = {
         "obstacle:\n  - number: 2\n    shape: {name: circle, radius: 0.25}\n    state: [[3, 3, 0], [4, 5, 0]]\n"
         "    tags: [pedestrian]",
         (
-            *("post", "pillar", "column", "tree", "box", "crate", "table", "shelf", "rack", "wall", "room", "person"),
+            *("post", "pillar", "column", "tree", "box", "crate", "table", "shelf", "rack", "wall", "room"),
             *("people", "pedestrian", "human", "crowd", "crowded"),
         ),
     ),

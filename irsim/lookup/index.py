@@ -10,9 +10,9 @@ from irsim.compat import DIFFERENCES
 from irsim.diagnostics.codes import CODES, TOOL_CODES, Code
 from irsim.diagnostics.examples import EXAMPLES
 from irsim.lookup.answer import Answer, Key, first_sentence
-from irsim.lookup.guides import GUIDES
 from irsim.lookup.metrics import METRIC_TOPICS
 from irsim.lookup.schema_walk import mappings, yaml_text
+from irsim.lookup.things import ALL_GUIDES
 from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
 
@@ -49,7 +49,7 @@ def index_answer() -> Answer:
             "the scenario and its components": [sections, *kinds],
             "templates": [Key(name="templates", text=", ".join(templates.names()))],
             "more": [
-                Key(name="guides", text=", ".join(GUIDES)),
+                Key(name="guides", text=", ".join(ALL_GUIDES)),
                 Key(name="suites", text=f"benchmarks with a fixed protocol: {', '.join(SUITES.names())}"),
                 Key(name="metrics", text=f"the {len(METRIC_TOPICS)} numbers that measure how good an episode was"),
                 Key(name="codes", text=f"the {len(all_codes())} codes of errors and warnings"),
@@ -70,7 +70,7 @@ def _overview(registry: Registry) -> str:
 
 def guides_answer() -> Answer:
     """List the guides."""
-    lines = [Key(name=name, text=guide.title) for name, guide in GUIDES.items()]
+    lines = [Key(name=name, text=guide.title) for name, guide in ALL_GUIDES.items()]
     return Answer(topic="guides", kind="index", title="Guides", groups={"guides": lines})
 
 
@@ -81,7 +81,7 @@ def guide_answer(name: str, see: list[str]) -> Answer:
         name: Name of the guide.
         see: Related topics.
     """
-    guide = GUIDES[name]
+    guide = ALL_GUIDES[name]
     title = f"{name}: {guide.title}"
     return Answer(topic=name, kind="guide", title=title, text=guide.text, example=guide.example, see=see)
 
@@ -157,7 +157,7 @@ def template_answer(template: Template) -> Answer:
         title=f"template {template.name}: {template.title}",
         text=f"{template.purpose} {template.prospect()} {PICTURE} {templates.picture_file(template.name)}",
         groups={"parameters": keys},
-        example=f"irsim new {template.name}{setting}",
+        example=f"irsim new {template.name}{setting} -o -  # prints it; without -o - it writes {template.name}.yaml",
         see=["templates"],
     )
 

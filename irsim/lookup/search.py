@@ -11,12 +11,12 @@ from irsim.bundled import templates
 from irsim.common.text import clean
 from irsim.lookup import full_text
 from irsim.lookup.answer import Answer, Key, TopicError, first_sentence
-from irsim.lookup.guides import GUIDES
 from irsim.lookup.index import all_codes, code_answer
 from irsim.lookup.metrics import METRIC_TOPICS, metric_line
 from irsim.lookup.schema_walk import Node, alternatives, paths, step
 from irsim.lookup.small_examples import example_of
 from irsim.lookup.synonyms import EVERYDAY, named
+from irsim.lookup.things import ALL_GUIDES
 from irsim.options.registry import REGISTRIES
 
 __all__ = ["MAX_HITS", "all_topics", "near_topics", "search_answer"]
@@ -67,7 +67,7 @@ def search_answer(schema: Node, topic: str, words: list[str], explain: Callable[
     if not (called or names) or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _MIN_LIKENESS)):
         raise TopicError(topic, near_topics(topics, words))
     lines |= {name: _line_of(schema, name) for name in called}
-    guides = {document.name: document for document in documents if document.name in GUIDES}
+    guides = {document.name: document for document in documents if document.name in ALL_GUIDES}
     whole = [name for name in names if name in guides and full_text.has_all(guides[name], topic)]
     first = [] if _is_named_whole(topic, called) else whole[:1]
     hits = [lines[name] for name in dict.fromkeys([*first, *called[:_MAX_EVERYDAY], *names])][:MAX_HITS]
@@ -132,7 +132,7 @@ def _documents(schema: Node, keys: list[tuple[Key, Node]]) -> tuple[list[full_te
         documents.append(full_text.Document(name, heads, text))
         lines[name] = Key(name=name, text=first_sentence(line))
 
-    for name, guide in GUIDES.items():
+    for name, guide in ALL_GUIDES.items():
         add(name, guide.title, f"{name} {guide.title} {' '.join(guide.words)}", guide.text)
     for template in templates.load_all():
         add(
@@ -166,8 +166,8 @@ def _line_of(schema: Node, name: str) -> Key:
     """Return the line of a code, a guide, a template or a path, even if another path has the same text."""
     if name in all_codes():
         return Key(name=name, text=all_codes()[name].title)
-    if name in GUIDES:
-        return Key(name=name, text=GUIDES[name].title)
+    if name in ALL_GUIDES:
+        return Key(name=name, text=ALL_GUIDES[name].title)
     if name in templates.names():
         return Key(name=name, text=first_sentence(templates.load(name).purpose))
     [node, *_] = functools.reduce(lambda nodes, word: step(schema, nodes, word), name.split("."), [schema])
@@ -195,7 +195,7 @@ def all_topics(schema: Node) -> set[str]:
         *(".".join(path) for path, _ in paths(schema)),
         *all_codes(),
         *templates.names(),
-        *GUIDES,
+        *ALL_GUIDES,
         *METRIC_TOPICS,
         *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names()),
     }

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from irsim.lookup.full_text import words_of
+from irsim.lookup.units import UNIT_WORDS
 
 __all__ = ["EVERYDAY", "named"]
 
 EVERYDAY: dict[str, str] = {
+    "units": UNIT_WORDS,
     "bridges": "real robot, real hardware, other program, other simulator, co-simulation, external simulator, socket",
     "bridges.ros2": "ros, rviz, turtlebot hardware, dds, zenoh, nav2",
     "bridges.rosbridge": "ros, rosbridge, websocket, real robot",
@@ -16,7 +18,8 @@ EVERYDAY: dict[str, str] = {
     "robot.behavior.replay": "replay, recorded pedestrians, recorded trajectory, trajectory file, eth ucy, "
     "data set of people",
     "robot.sensors.lidar2d": "lidar, laser, laser scanner, scanner, lidar scanner, range finder, rangefinder, ladar, "
-    "720, 720 beams, 1080 beams, 360 beams, distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range",
+    "720, 720 beams, 1080 beams, 360 beams, distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range"
+    ", laserscanner, abstandssensor, láser, escáner láser, 激光雷达, 激光",
     "robot.sensors.fmcw_lidar2d": "lidar, fmcw, fmcw lidar, doppler, radar, velocity lidar, radial velocity",
     "robot.sensors.contact2d": "bumper, touch sensor, contact sensor, tactile",
     "robot.sensors": "sensor, camera, depth camera, imu, gps",
@@ -26,7 +29,8 @@ EVERYDAY: dict[str, str] = {
     "robot.fov": "field of view, view angle, visual range, sees, seen, visible, visibility, surveillance, guard, "
     "vision cone, view cone, sight cone, cone of vision, cone, camera, line of sight, watch, sight",
     "robot.kinematics.acker": "car, ackermann, ackerman, car-like, bicycle, bicycle model, vehicle, truck, bus, "
-    "steering, tricycle, lorry, forklift",
+    "steering, tricycle, lorry"
+    ", auto, lkw, fahrzeug, coche, camión, 汽车, 卡车, 车辆",
     "robot.kinematics.diff": "differential, differential drive, diff drive, unicycle, turtlebot, two wheels, tank, "
     "skid steer",
     "robot.kinematics.omni": "omnidirectional, holonomic, mecanum, omni wheels, omniwheel, swerve, point mass",
@@ -44,7 +48,8 @@ EVERYDAY: dict[str, str] = {
     "robot.behavior.rvo": "velocity obstacle, reciprocal velocity obstacle, vo, hrvo, collision avoidance",
     "robot.behavior.dash": "straight line, drive straight, go straight, go to goal, point to point",
     "robot.behavior.dash.wander": "wander, random walk, roam, wandering, random goals",
-    "robot.behavior.dash.loop": "loop, patrol, patrolling, back and forth, shuttle, to and fro, guard",
+    "robot.behavior.dash.loop": "loop, patrol, patrolling, back and forth, shuttle, to and fro, guard"
+    ", hin und her, de ida y vuelta, ida y vuelta, patrullar, 巡逻, 来回",
     "robot.behavior.follow": "path following, follow path, navigate, path planning, route, plan, pure pursuit, "
     "global planner",
     "robot.behavior": "behavior, behaviour, controller, policy, local planner, navigation",
@@ -57,23 +62,28 @@ EVERYDAY: dict[str, str] = {
     "robot.behavior.follow.planner.jps": "jump point search",
     "robot.behavior.follow.planner.prm": "probabilistic roadmap, roadmap",
     "robot.shape": "shape, footprint, geometry, body, robot size, obstacle size, size",
-    "robot.shape.circle": "disc, disk, round, cylinder, post, pillar, robot size",
-    "robot.shape.rectangle": "box, square, crate, table, shelf, oblong, wall",
+    "robot.shape.circle": "disc, disk, round, cylinder, post, pillar, robot size, säule, columna, 柱子",
+    "robot.shape.rectangle": "box, square, crate, table, shelf, oblong, wall"
+    ", kiste, regal, tisch, caja, mesa, estante, 箱子, 货架, 桌子",
     "robot.shape.polygon": "triangle, hexagon, polyhedron, irregular, vertex, vertices",
     "robot.shape.linestring": "line, wall, fence, segment, polyline, barrier, courtyard, yard, room, bend, l-bend, "
-    "corner",
+    "corner"
+    ", wand, mauer, zimmer, pared, muro, habitación, sala, 墙, 房间",
     "robot.shape.compound": "l-shape, l-shaped, t-shape, several parts, composite",
     "robot.shape.circle.radius": "radius, diameter",
     "robot.state": "start, start position, initial position, initial pose, start pose, pose, spawn, position, "
-    "orientation",
-    "robot.goal": "goal, destination, target, target position, end position, go to goal",
+    "orientation"
+    ", startposition, salida, inicio, 起点",
+    "robot.goal": "goal, destination, target, target position, end position, go to goal"
+    ", ziel, meta, objetivo, destino, 目标, 终点",
     "robot.waypoints": "waypoint, via point, checkpoint, route, several goals, multiple goals",
     "robot.goal_threshold": "goal tolerance, arrival tolerance, goal radius, arrive",
     "robot.arrive_mode": "goal angle threshold, goal heading, goal angle, goal yaw, final heading, heading tolerance, "
     "heading threshold, yaw tolerance, arrival heading",
     "robot.number": "number of robots, how many robots, number of obstacles, count, fleet size",
     "robot.vel_max": "sprint, run fast, hurry, turn rate, "
-    "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity",
+    "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity"
+    ", geschwindigkeit, velocidad, 速度",
     "robot.acce": "acceleration, acceleration limit, braking, brake, braking distance, stopping distance, deceleration",
     "robot.distribution": "random positions, random placement, random start, scatter, spread, placement",
     "robot.distribution.random": "random positions, random placement, random start, scatter",
@@ -82,12 +92,14 @@ EVERYDAY: dict[str, str] = {
     "robot.color": "colour",
     "robot.plot": "drawing, draw, label, appearance",
     "robot.plot.show_trajectory": "trajectory, trail, path drawn, show path",
-    "robot": "robot, agent, multi robot, several robots",
-    "obstacle": "obstacle, moving obstacle, dynamic obstacle, static obstacle, door, chair",
+    "robot": "robot, agent, multi robot, several robots, roboter, 机器人",
+    "obstacle": "obstacle, moving obstacle, dynamic obstacle, static obstacle, door, chair"
+    ", hindernis, hindernisse, obstáculo, 障碍物",
     "world": "environment, arena, scene",
     "world.width": "world size, arena size, size of the world",
     "world.boundary": "boundary, border, wall, edge of the world, closed world, courtyard, yard",
-    "world.obstacle_map": "map, occupancy grid, grid map, gridmap, floor plan, grid, bitmap, terrain",
+    "world.obstacle_map": "map, occupancy grid, grid map, gridmap, floor plan, grid, bitmap, terrain"
+    ", karte, mapa, 地图",
     "world.obstacle_map.image": "image map, png, floor plan, bitmap, picture",
     "world.obstacle_map.ros": "ros map, map server, pgm, slam",
     "world.obstacle_map.perlin": "random map, forest, procedural",
@@ -111,8 +123,11 @@ EVERYDAY: dict[str, str] = {
     "guard-patrol": "guard, watchman, surveillance, vision cone, sight cone",
     "room-evacuation": "evacuation, evacuate, emergency exit, exit, escape, room exit",
     "l-passage": "bend, l-bend, passage, corner, blind corner",
-    "corridor-passing": "passage, corridor, hallway, aisle",
-    "doorway": "passage, narrow passage, door, gap",
+    "corridor-passing": "passage, corridor, hallway, aisle, flur, pasillo, 走廊",
+    "doorway": "passage, narrow passage, door, gap, tür, puerta, 门",
+    "warehouse": "lager, lagerhalle, almacén, 仓库",
+    "car-park": "parkplatz, aparcamiento, estacionamiento, 停车场",
+    "crossing": "kreuzung, cruce, intersection, 十字路口, 路口",
 }
 """Topic -> its everyday names, separated by commas; the names of the language itself are not repeated here."""
 

@@ -12,7 +12,6 @@ from irsim.compat import DIFFERENCES
 from irsim.diagnostics.errors import InputError
 from irsim.lookup.answer import Answer, Key, TopicError
 from irsim.lookup.full_text import words_of
-from irsim.lookup.guides import GUIDES
 from irsim.lookup.index import (
     all_codes,
     code_answer,
@@ -39,6 +38,8 @@ from irsim.lookup.schema_walk import COLOR, Node, component_name, components, de
 from irsim.lookup.search import MAX_HITS, all_topics, near_topics, search_answer
 from irsim.lookup.small_examples import BETTER, example_of, small_example
 from irsim.lookup.synonyms import named
+from irsim.lookup.things import ALL_GUIDES, THINGS
+from irsim.lookup.units import unit_answer
 from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
 
@@ -110,7 +111,9 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     match = _find(schema, words) if words else None
     if match:
         return _part(schema, *match)
-    guide = next((known for known, guide in GUIDES.items() if topic.strip().lower() in (known, *guide.words)), None)
+    if (in_units := unit_answer(topic)) is not None:
+        return in_units
+    guide = _guide_called(topic)
     if guide is not None:
         asked = f"metric {name}"
         return guide_answer(guide, ([asked] if asked in METRIC_TOPICS else []) + named(topic)[:MAX_HITS])
@@ -162,6 +165,14 @@ def _component_called(topic: str) -> str | None:
     name = called[0].rpartition(".")[2] if len(called) == 1 else ""
     known = name.startswith(start) and any(name in registry.names() for registry in REGISTRIES.values())
     return called[0] if known else None
+
+
+def _guide_called(topic: str) -> str | None:
+    """Find the guide that has a topic among its words; the plurals of things count, too."""
+    asked, singular = topic.strip().lower(), words_of(topic)
+    exact = (name for name, guide in ALL_GUIDES.items() if asked in (name, *guide.words))
+    alike = (name for name, thing in THINGS.items() if singular in map(words_of, (name, *thing.words)))
+    return next(exact, None) or next(alike, None)
 
 
 def _find(schema: Node, words: list[str]) -> tuple[tuple[str, ...], list[Node]] | None:

@@ -9,6 +9,7 @@ from irsim.bundled import templates
 from irsim.diagnostics.errors import InputError
 from irsim.lookup import Answer, TopicError, as_brief_text, as_text, lookup_several, schema_part, topics_of
 from irsim.lookup import lookup as look_up
+from irsim.lookup.answer import said_once
 from irsim.lookup.index import PICTURE
 from irsim.runs.files import RunError
 from irsim.scenario.yaml.modeline import without_modeline
@@ -62,7 +63,7 @@ def _list(answer: Answer) -> str:
 
 
 def _several(topics: list[str]) -> str:
-    """Brief explanations of several topics; of templates, the YAML."""
+    """Brief explanations of several topics, each said once."""
     try:
         explanations = lookup_several(topics)
     except TopicError as error:
@@ -71,12 +72,14 @@ def _several(topics: list[str]) -> str:
     except InputError as error:
         raise RunError("bad-argument", error.message, error.fix, where="topic") from None
     parts = []
-    for one in explanations:
+    for one in said_once(topics, explanations):
         if isinstance(one, TopicError):
             near = f": did you mean {' or '.join(one.near)}?" if one.near else ""
             parts.append(f"{one.message}{near}")
         elif one.kind == "template":
-            parts.append(_template(one.topic, {}))
+            brief = _without_picture(one).model_copy(update={"example": None})
+            more = f"\nlookup with topic: {one.topic}, alone, returns its YAML." if one.groups else ""
+            parts.append(as_brief_text(brief) + more)
         else:
             parts.append(as_brief_text(_with_usable_best(one)))
     return "\n\n".join(f"== {part}" for part in parts)

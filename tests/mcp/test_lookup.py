@@ -44,7 +44,7 @@ async def test_index_fits_a_screen_and_leads_on(client: Caller) -> None:
         ("hallway", ["corridor-passing"]),
         ("dash, hallway", ["corridor-passing"]),
         ("dash, car avoids with orca", ["use follow with local: {name: orca}, for cars too"]),
-        ("robot.fov, sfm, doorway, quux", ["== robot.fov", "== behavior sfm", "with the default parameters", "quux"]),
+        ("robot.fov, sfm, doorway, quux", ["== robot.fov", "== behavior sfm", "== template doorway", "quux"]),
         ("suites", ["random_polygons_v1"]),
         ("policies", ["sarl"]),
     ],
@@ -56,6 +56,18 @@ def test_topics(topic: str, said: list[str]) -> None:
     assert "picture.png" not in text  # no path of this machine
     if topic in ("suites", "metrics"):
         assert len(explanation(text.rsplit("such as ", 1)[1], None)) > 50
+
+
+def test_several_topics_are_answered_briefly_and_each_thing_once() -> None:
+    text = explanation("gps, camera, imu, ice, doorway, corridor-passing, feet, mph, drone, uav", None)
+    assert text.count("The world is flat and seen from above") == 1
+    assert text.count("1 in = 0.0254 m") == 1
+    assert text.count("keeps its height is kinematics omni") == 1
+    for said in ("camera: see limits above", "imu: see limits above", "uav: see drone above", "1 mph = 0.44704 m/s"):
+        assert f"== {said}" in text
+    assert "```yaml" not in text  # whole templates come alone
+    assert "lookup with topic: doorway, alone, returns its YAML" in text
+    assert len(text) < 4_000
 
 
 @pytest.mark.parametrize("name", templates.names())

@@ -1,0 +1,246 @@
+"""Things that users name and the language does not: what each is in a scenario, or what takes its place."""
+
+from __future__ import annotations
+
+from irsim.lookup.guides import GUIDES, Guide
+
+__all__ = ["ALL_GUIDES", "THINGS"]
+
+_NO = "irsim has no"
+
+THINGS: dict[str, Guide] = {
+    "agv": Guide(
+        "a transport robot, diff or omni, a rectangle, 1 to 2 m/s",
+        "An AGV or AMR turns on the spot (kinematics diff; omni with mecanum wheels), is a rectangle of about 1.0 x "
+        "0.6 m and drives 1 to 2 m/s. Along lanes: waypoints with dash; around racks and other robots: behavior follow "
+        "with local: {name: orca}. Templates: warehouse, mixed-fleet. Loads, orders and batteries do not exist.",
+        "robot:\n  - name: agv\n    kinematics: {name: diff}\n    shape: {name: rectangle, length: 1.0, width: 0.6}\n"
+        "    state: [1, 1, 0]\n    goal: [9, 6]\n    vel_max: [1.5, 1.5]\n"
+        "    behavior: {name: follow, local: {name: orca}}",
+        (
+            *("amr", "automated guided vehicle", "autonomous mobile robot", "transport robot"),
+            *("delivery robot", "logistics robot", "service robot", "fts", "fahrerloses transportsystem"),
+            *("transportroboter", "lieferroboter", "robot de reparto", "vehículo guiado", "搬运机器人", "送货机器人"),
+        ),
+    ),
+    "forklift": Guide(
+        "kinematics acker and a rectangle; it lifts nothing",
+        "Take kinematics acker with a rectangle of about 2.4 x 1.2 m, wheelbase 1.5 m and 2 to 3 m/s; a pallet jack: "
+        f"1.8 x 0.7 m, walking pace. {_NO} forks, loads or steered rear wheels: a pallet is an obstacle with shape "
+        "rectangle (1.2 x 0.8 m), and it stays where it is. Pushing: world.collision_mode: contact. Template: "
+        "warehouse.",
+        "robot: {kinematics: {name: acker}, shape: {name: rectangle, length: 2.4, width: 1.2, wheelbase: 1.5},\n"
+        "        state: [2, 2, 0], goal: [14, 8], vel_max: [2, 0.6], behavior: {name: follow}}",
+        (
+            *("fork lift", "forklift truck", "pallet jack", "pallet truck", "pallet"),
+            *("reach truck", "stacker", "gabelstapler", "stapler", "hubwagen", "palette", "carretilla elevadora"),
+            *("montacargas", "transpaleta", "palé", "叉车", "托盘"),
+        ),
+    ),
+    "tug": Guide(
+        "kinematics acker, without trailers",
+        f"{_NO} couplings: a trailer does not follow its tractor. Take kinematics acker for the tractor alone, or one "
+        "long rectangle that covers both and turns wider than the real thing; several vehicles one behind the other "
+        "are robots with the same waypoints and start_time in turn. Say so in the report.",
+        "robot: {kinematics: {name: acker}, shape: {name: rectangle, length: 1.8, width: 1.0, wheelbase: 1.2}}",
+        (
+            *("tugger", "tow truck", "tractor", "trailer", "towing", "tow", "tugger train", "convoy", "platoon"),
+            *("schlepper", "schleppzug", "anhänger", "traktor", "remolque", "remolcador", "拖车", "牵引车"),
+        ),
+    ),
+    "cart": Guide(
+        "a rectangle, which stands or is pushed",
+        "Standing: an obstacle with shape rectangle, about 1.0 x 0.6 m. Pushed by a person: one obstacle with "
+        "kinematics diff and a shape compound (cart and person), tags: [pedestrian], 1.0 m/s. Pushed by a robot: "
+        "world.collision_mode: contact with mass, friction and drag on both.",
+        "obstacle: {kinematics: {name: diff}, shape: {name: rectangle, length: 1.4, width: 0.6}, tags: [pedestrian],\n"
+        "           state: [2, 2, 0], goal: [8, 2], vel_max: [1.0, 1.0], behavior: {name: orca}}",
+        (
+            *("trolley", "shopping cart", "hand cart", "handcart", "luggage cart", "stroller", "pram", "pushchair"),
+            *("hospital bed", "bed", "gurney", "einkaufswagen", "karren", "wagen", "kinderwagen", "carro", "carrito"),
+            *("手推车", "购物车", "推车"),
+        ),
+    ),
+    "wheelchair": Guide(
+        "kinematics diff and a rectangle, at walking pace",
+        "Take kinematics diff with a rectangle of about 1.1 x 0.65 m and 1 to 1.7 m/s, as a robot if it is tested, as "
+        "an obstacle with tags: [pedestrian] if it is one of the people. Its door must be 0.8 m wide or more.",
+        "obstacle: {kinematics: {name: diff}, shape: {name: rectangle, length: 1.1, width: 0.65}, tags: [pedestrian],\n"
+        "           state: [2, 2, 0], goal: [8, 2], vel_max: [1.2, 1.5], behavior: {name: orca}}",
+        (
+            *("wheel chair", "powered wheelchair", "mobility scooter", "rollstuhl"),
+            *("silla de ruedas", "轮椅"),
+        ),
+    ),
+    "vacuum": Guide(
+        "kinematics diff and a disc of radius 0.17 m, 0.3 m/s",
+        "It drives at random with behavior dash and wander: true (targets within range_low to range_high), or along "
+        "waypoints in rows. Nothing is cleaned; world.fog_map with a short lidar measures the share of the floor that "
+        "it has seen. A bumper is the sensor contact2d; with collision_mode stop the first touch ends its run.",
+        "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.17}, state: [2, 2, 0],\n"
+        "        vel_max: [0.3, 1.5], behavior: {name: dash, wander: true}}",
+        (
+            *("roomba", "vacuum cleaner", "robot vacuum", "vacuum robot", "cleaning robot", "cleaner", "lawn mower"),
+            *("lawnmower", "mower", "saugroboter", "staubsauger", "putzroboter", "mähroboter", "aspiradora"),
+            *("robot aspirador", "cortacésped", "扫地机器人", "吸尘器"),
+        ),
+    ),
+    "shuttle": Guide(
+        "a vehicle that goes back and forth, or a bus",
+        "Back and forth between two places: waypoints with behavior {name: dash, loop: true}; among others the same "
+        "keys of orca or follow. As a bus: kinematics acker, a rectangle of 5 x 2 m, behavior follow. "
+        f"{_NO} stops of a given length: split the ride into runs, or use start_time for the first one.",
+        "behavior: {name: dash, loop: true}",
+        ("shuttle bus", "people mover", "ferry", "pendelbus", "lanzadera", "摆渡车", "班车"),
+    ),
+    "legged": Guide(
+        "omni_angular with the outline of the body; no legs",
+        f"{_NO} legs, gaits or balance. Seen from above a quadruped is kinematics omni_angular (it steps sideways and "
+        "turns on the spot) with a rectangle of about 1.1 x 0.5 m and up to 1.6 m/s; a humanoid is a circle of radius "
+        "0.3 m, up to 1.2 m/s. Steps, slopes and rough ground are not simulated: say so.",
+        "robot: {kinematics: {name: omni_angular}, shape: {name: rectangle, length: 1.1, width: 0.5},\n"
+        "        state: [2, 2, 0], goal: [8, 5], vel_max: [1.6, 0.8, 1.5]}",
+        (
+            *("quadruped", "legged robot", "robot dog", "anymal", "unitree", "hexapod", "biped"),
+            *("humanoid", "humanoid robot", "walking robot", "leg", "laufroboter", "vierbeiner"),
+            *("roboterhund", "humanoider roboter", "cuadrúpedo", "perro robot", "humanoide", "四足机器人", "机器狗"),
+            *("人形机器人",),
+        ),
+    ),
+    "drone": Guide(
+        "only one that keeps its height",
+        f"{_NO} heights: nothing passes over or under another thing. A drone that keeps its height is kinematics omni "
+        "(omni_angular if its heading matters) with a circle of about 0.25 m radius and 2 to 5 m/s. Take-off, landing "
+        "and flying over shelves cannot be shown: say so, then offer this. More: limits.",
+        "robot: {kinematics: {name: omni}, shape: {name: circle, radius: 0.25}, state: [2, 2], goal: [8, 5],\n"
+        "        vel_max: [3, 3], behavior: {name: orca}}",
+        (
+            *("uav", "quadcopter", "quadrotor", "multicopter", "aerial", "helicopter", "fly"),
+            *("flying", "flight", "drohne", "drohnen", "fliegen", "dron", "volar", "无人机", "飞行"),
+        ),
+    ),
+    "arm": Guide(
+        "no arms and grippers; the base alone",
+        f"{_NO} joints, arms, grippers, picking or placing. The base of a mobile manipulator can drive to the place "
+        "where it would reach (arrive_mode: state for its heading); an arm that stands out is a part of its shape "
+        "compound and does not move by itself. Pushing exists: world.collision_mode: contact. Arms need another "
+        "simulator (irsim export writes mjcf, usd and sdf).",
+        None,
+        (
+            *("robot arm", "robotic arm", "manipulator", "mobile manipulator", "gripper", "grasp", "grasping"),
+            *("pick", "pick up", "pick and place", "joint", "roboterarm", "greifer", "greifen", "brazo"),
+            *("brazo robótico", "pinza", "机械臂", "抓取"),
+        ),
+    ),
+    "elevator": Guide(
+        "there is one flat floor",
+        f"{_NO} floors above one another and no doors that open. Show the part on one floor: the cabin is a small room "
+        "(a linestring with a gap of 0.9 to 1.1 m as its door), people come out by start_time, and the robot has its "
+        "goal in the cabin; or one file for each floor. Waiting before the ride: start_time of the robot.",
+        "obstacle: {shape: {name: linestring, vertices: [[0, 0], [0, 2], [2, 2], [2, 0], [1.5, 0]]}, state: [6, 4, 0]}",
+        (
+            *("lift", "escalator", "storey", "aufzug", "fahrstuhl", "rolltreppe", "stockwerk"),
+            *("ascensor", "elevador", "escalera mecánica", "电梯", "扶梯"),
+        ),
+    ),
+    "stairs": Guide(
+        "no stairs, ramps or slopes, as the world is flat",
+        f"{_NO} heights. A place that a robot must keep off is an obstacle, or a zone that the behavior follow avoids "
+        "(see keep-out); a ramp that it may use is a corridor like any other, and a lower vel_max holds for the whole "
+        "run. Refuse what depends on the climb, with this reason. More: limits.",
+        "world: {zones: [{name: stairs, rectangle: [4, 2, 6, 4]}]}\n"
+        "robot: {state: [1, 3, 0], goal: [9, 3], behavior: {name: follow, avoid: [stairs]}}",
+        (
+            *("stairway", "staircase", "ramp", "slope", "curb", "kerb", "hill"),
+            *("terrain", "uneven", "treppe", "treppen", "rampe", "stufe", "bordstein", "escalera"),
+            *("rampa", "escalón", "楼梯", "台阶", "坡道", "斜坡"),
+        ),
+    ),
+    "floor": Guide(
+        "carpet, tiles and ice change nothing",
+        f"{_NO} surfaces: no grip, slip or speed that depends on the place. A carpet can be drawn (an obstacle with "
+        "unobstructed: true, which nothing touches) or watched (world.zones). Slip of one robot everywhere: noise of "
+        "its kinematics; a slower one: vel_max.",
+        "obstacle: {name: carpet, shape: {name: rectangle, length: 3, width: 2}, state: [5, 3, 0], unobstructed: true}",
+        (
+            *("carpet", "rug", "tile", "grass", "mud", "sand", "gravel", "slippery", "ice", "wet floor"),
+            *("surface", "ground", "teppich", "boden", "rutschig", "alfombra", "suelo", "resbaladizo", "地毯", "地面"),
+        ),
+    ),
+    "person": Guide(
+        "an obstacle with tags: [pedestrian]; sizes and speeds by age",
+        "A grown-up is a circle of radius 0.2 to 0.3 m and walks 1.3 m/s; a child: 0.15 m, 0.9 m/s (running 2); an "
+        "elderly person: 0.25 m, 0.8 m/s; a jogger: 2.5 m/s. Walking: kinematics and a behavior, such as "
+        "{name: orca, safe_radius: 0.1}, or sfm with world.collision_mode: unobstructed_obstacles; strolling: "
+        "{name: dash, wander: true}; standing: neither kinematics nor behavior. Crowds: number 20 or more, about 0.3 "
+        "persons per m2. See also standing-group.",
+        "obstacle:\n  - name: child\n    kinematics: {name: omni}\n    shape: {name: circle, radius: 0.15}\n"
+        "    tags: [pedestrian]\n    state: [2, 2, 0]\n    goal: [8, 5]\n    vel_max: [0.9, 0.9]\n"
+        "    behavior: {name: orca, safe_radius: 0.1}",
+        (
+            *("kid", "child", "children", "toddler", "baby", "elderly", "old man", "old woman"),
+            *("man", "woman", "worker", "staff", "nurse", "patient", "visitor", "customer", "passer-by", "jogger"),
+            *("runner", "adult", "fußgänger", "passant", "mensch", "menschen", "leute", "personen", "kinder"),
+            *("menge", "menschenmenge", "peatón", "peatones", "persona", "gente", "niño", "niña"),
+            *("multitud", "行人", "人", "人群", "路人", "儿童", "孩子", "小孩", "老人"),
+        ),
+    ),
+    "animal": Guide(
+        "a small moving obstacle",
+        "An obstacle with kinematics omni, a circle of about 0.2 m radius, 1 to 3 m/s and behavior {name: dash, "
+        "wander: true}, or sfm; without tags: [pedestrian], so that it does not count as a person.",
+        "obstacle: {name: dog, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, state: [2, 2],\n"
+        "           vel_max: [2, 2], behavior: {name: dash, wander: true}}",
+        ("dog", "cat", "pet", "hund", "katze", "tier", "perro", "gato", "狗", "猫"),
+    ),
+    "endless": Guide(
+        "a run always ends",
+        "Going on for ever is behavior {name: dash, loop: true} (waypoints, back to the first) or wander: true; the "
+        "run ends at world.time_limit, which you set to the time that shall be seen. A program may call env.step as "
+        "long as it likes.",
+        "world: {time_limit: 120}\nrobot: {waypoints: [[2, 2], [8, 2]], behavior: {name: dash, loop: true}}",
+        (
+            *(
+                "for ever",
+                "forever",
+                "endlessly",
+                "indefinitely",
+                "infinite",
+                "infinitely",
+                "never stops",
+                "never ends",
+            ),
+            *("keeps going", "non-stop", "nonstop", "endlos", "unendlich", "para siempre", "sin fin", "永远", "无限"),
+        ),
+    ),
+    "conveyor": Guide(
+        "no conveyors, doors that open, cranes or turntables",
+        f"{_NO} machines that move other things or switch. A thing that moves by itself is an obstacle with kinematics "
+        "omni and a route (waypoints, dash); a door that slides to and fro has loop: true and knows no signal; a door "
+        "that is open is a gap.",
+        "obstacle: {name: sliding_door, kinematics: {name: omni}, shape: {name: rectangle, length: 1, width: 0.1},\n"
+        "           state: [5, 3, 0], waypoints: [[6, 3], [5, 3]], vel_max: [0.5, 0.5],\n"
+        "           behavior: {name: dash, loop: true}}",
+        (
+            *("conveyor belt", "automatic door", "sliding door", "revolving door", "swing door", "turnstile", "crane"),
+            *("förderband", "schiebetür", "drehtür", "kran", "cinta transportadora", "puerta automática", "传送带"),
+            *("自动门",),
+        ),
+    ),
+    "dock": Guide(
+        "a goal with a heading; no batteries",
+        "The place is the robot's goal with arrive_mode: state (its heading counts) and a small goal_threshold; the "
+        "housing of the station is a rectangle behind it, at least half a robot's length away from the goal. "
+        f"{_NO} batteries and no rest at a place.",
+        "robot: {state: [2, 2, 0], goal: [8, 5, 1.5708], arrive_mode: state, goal_threshold: 0.05, "
+        "kinematics: {name: diff}}",
+        (
+            *("docking", "docking station", "charger", "charging", "charging station", "charge", "ladestation"),
+            *("laden", "estación de carga", "cargar", "充电", "充电桩", "充电站"),
+        ),
+    ),
+}
+"""Name -> what to write, an example, and the names that users have for it in English, German, Spanish and Chinese."""
+
+ALL_GUIDES = GUIDES | THINGS
+"""The guides, with those about things."""
