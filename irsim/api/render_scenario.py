@@ -209,10 +209,12 @@ def animate(
     progress: Progress | None,
     recorder: Recorder | None = None,
     move: Callable[[int], None] | None = None,
+    go_on: bool = False,
 ) -> list[str]:
     """Run and show an environment, and write an animation of it; return the file that was written, if any.
 
     ``move`` moves it to a step instead, as a recorded run does, which goes on to the last step whatever happens.
+    ``go_on``: go on when every robot has arrived or stopped.
     """
     env.save_ani = save is not None
     if save is not None:
@@ -221,7 +223,9 @@ def animate(
     for step in range(steps):
         if move is not None:
             move(step + 1)
-        elif env.done():
+        elif env.done() and not go_on:
+            if progress is not None and step:
+                progress(step, step)  # it is over: the count ends at its total
             break
         else:
             env.step()

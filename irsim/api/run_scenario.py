@@ -22,7 +22,7 @@ from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
 from irsim.episodes.opening import MAX_TRIES, crowded_message, findings_under_policy, first_with_room
 from irsim.episodes.run_report import RunPlan, run_result
 from irsim.results.findings import Finding
-from irsim.results.run import RunResult
+from irsim.results.run import RunResult, Until
 from irsim.runs.recorder import recording
 from irsim.scenario.checks.bridges import driven_without_goal
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
@@ -49,6 +49,7 @@ def run(
     policy: PolicySource | None = None,
     behavior: str | Mapping[str, Any] | None = None,
     perturb: Perturbations | None = None,
+    until: Until = "done",
     bridges: Sequence[str | Mapping[str, Any]] = (),
     imports: Sequence[str] = (),
     save: str | Path | None = None,
@@ -75,6 +76,7 @@ def run(
         behavior: Another name of ``policy``.
         perturb: Starts, speeds and delays that differ from the scenario, as the seed draws them: see
             :func:`irsim.benchmark`.
+        until: ``time_limit`` lets the run go on to its horizon: a robot with ``loop`` patrols on after its first lap.
         bridges: Connections to other programs, which the scenario does not name: mappings such as ``{"name":
             "json_lines"}``, or their text. Each takes part in the steps.
         imports: Modules to import first, for behaviors that they register.
@@ -138,6 +140,7 @@ def run(
         perturb=[perturbation_text(one) for one in perturbations],
         bridges=[bridge.name for bridge in opened],
         added_bridges=[bridge_text(one) for one in added],
+        until=until,
     )
     targets = _check_exports([export] if isinstance(export, (str, Path)) else export, overwrite=overwrite)
     with (
@@ -152,9 +155,10 @@ def run(
         files, lost = list[str](), None
         try:
             if save is None and not show:
-                advance(env, horizon, progress, recorder=recorder)
+                advance(env, horizon, progress, until_done=until == "done", recorder=recorder)
             else:
-                files = animate(env, horizon, Path(save) if save is not None else None, progress, recorder)
+                target, on = Path(save) if save is not None else None, until != "done"
+                files = animate(env, horizon, target, progress, recorder, go_on=on)
         except (PolicyLostError, BridgeLostError) as error:
             lost = error
         result = run_result(simulation, read_events(simulation), plan, files=files, lost=lost)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
-__all__ = ["File", "Imports", "Json", "MaxObjects", "Perturb", "Seed", "Steps", "Strict"]
+__all__ = ["File", "Imports", "Json", "MaxObjects", "Perturb", "Seed", "Steps", "Strict", "Until"]
 
 File = Annotated[str, typer.Argument(help="Scenario file (YAML).", show_default=False)]
 Seed = Annotated[
@@ -42,4 +42,11 @@ Perturb = Annotated[
 MaxObjects = Annotated[
     int | None,
     typer.Option(min=1, help="Maximum number of objects in a scenario. Default: 100000.", show_default=False),
+]
+Until = Annotated[
+    Literal["done", "time_limit"],
+    typer.Option(
+        help="When to end: when every robot has arrived or stopped, one with loop at the end of its first lap (done), "
+        "or at the time limit, so that it patrols on (time_limit)."
+    ),
 ]

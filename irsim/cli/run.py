@@ -14,7 +14,7 @@ from rich.text import Text
 from irsim import api
 from irsim.cli.findings import import_user_modules, limits_for, print_findings
 from irsim.cli.guard import FAILED, ended_in_order
-from irsim.cli.options import File, Imports, Json, MaxObjects, Perturb, Seed, Steps, Strict
+from irsim.cli.options import File, Imports, Json, MaxObjects, Perturb, Seed, Steps, Strict, Until
 from irsim.cli.output import console, print_error, print_json, progress
 from irsim.common.files import check_suffix
 from irsim.common.text import clean, seconds
@@ -55,6 +55,7 @@ def run(
     ] = None,
     behavior: Annotated[str | None, typer.Option(metavar="NAME", help="Another name of --policy.", hidden=True)] = None,
     perturb: Perturb = None,
+    until: Until = "done",
     bridge: Annotated[
         list[str] | None,
         typer.Option(
@@ -110,6 +111,7 @@ def run(
             policy=policy,
             behavior=behavior,
             perturb=perturb,
+            until=until,
             bridges=bridge or (),
             imports=imports or (),
             save=save_gif,
@@ -183,13 +185,15 @@ def _table(result: RunResult) -> object:
     for heading in ("robot", "outcome"):
         table.add_column(heading)
     between = any(robot.contacts_between_steps for robot in result.robots)
-    for heading in ("arrived", "travelled", "to goal", "collisions", *["between steps"] * between):
+    laps = any(robot.laps is not None for robot in result.robots)
+    for heading in ("arrived", *["laps"] * laps, "travelled", "to goal", "collisions", *["between steps"] * between):
         table.add_column(heading, justify="right")
     for robot in result.robots[:MAX_ROBOTS_SHOWN]:
         table.add_row(
             clean(robot.name, 24),
             Text(robot.outcome, style=_COLORS[robot.outcome]),
             "-" if robot.time_to_goal is None else seconds(robot.time_to_goal),
+            *["-" if robot.laps is None else str(robot.laps)] * laps,
             f"{robot.path_length:.1f} m",
             "-" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m",
             str(robot.collision_count),

@@ -203,5 +203,5 @@ def _log_between_steps(env: EnvState, event: Event) -> None:
     views = [get_object_by_name(env, str(name)) for name in (event.object, event.partner)]
     if any(view is not None and view.role == "robot" for view in views):
         what = "passed through" if event.kind == "passed_through" else "touched"
-        place = f"at {event.time:.3f} s near ({event.x:.2f}, {event.y:.2f})"
+        place = f"at {event.time:.3f} s, contact near ({event.x:.2f}, {event.y:.2f})"
         env.logger.warning(f"{event.object} {what} {event.partner} between two steps {place}")

@@ -91,7 +91,7 @@ def between_steps_message(
         return None
     first = min(mine, key=lambda event: (event.kind != "passed_through", event.time))
     one, other = called(scenario, first.object), called(scenario, first.partner)
-    when = f"between two steps at {seconds(first.time)} near ({first.x:.2f}, {first.y:.2f})"
+    when = f"between two steps at {seconds(first.time)}, contact near ({first.x:.2f}, {first.y:.2f})"
     through = first.kind == "passed_through"
     what = f"{one} passed through {other} {when}" if through else f"{one} and {other} touched {when}"
     if not through and first.depth:

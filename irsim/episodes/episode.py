@@ -85,3 +85,5 @@ def advance(
         done += max(1, env.advance(min(_CHUNK_STEPS, steps - done), until_done=until_done, recorder=recorder))
         if progress is not None:
             progress(done, steps)
+    if progress is not None and 0 < done < steps:
+        progress(done, done)  # it is over: the count ends at its total

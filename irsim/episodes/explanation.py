@@ -31,6 +31,7 @@ from irsim.episodes.obstructions import (
     reverse_message,
 )
 from irsim.episodes.progress import find_circling, has_one_end, no_progress_since, stalled_step
+from irsim.episodes.rounds import swings_message
 from irsim.episodes.scene_summary import called
 from irsim.episodes.watching import sights_message, zones_message
 from irsim.results.episode import Left, RobotResult, ZoneResult
@@ -47,9 +48,9 @@ _MAX_NAMED = 3
 _MAX_STANDING_SPEED = 1e-3
 """Speed [m/s] below which a robot stands still; for a very slow robot a tenth of its top speed."""
 _LIMIT_SOURCES: dict[HorizonSource, str] = {
-    "argument": "the steps asked for",
+    "argument": "from the steps asked for",
     "scenario": "world.time_limit",
-    "default": "the default limit; world.time_limit sets another",
+    "default": "the default; world.time_limit sets another",
     "limits": "the maximum number of steps of one run here",
 }
 """Where the time limit comes from, in words."""
@@ -61,6 +62,7 @@ def summary_message(
     driven: str | None,
     left: Sequence[Left],
     zones: Mapping[str, ZoneResult],
+    rounds: str | None = None,
 ) -> str:
     """Say what was touched between steps, which robots arrived, the first collision, and what else happened.
 
@@ -70,6 +72,7 @@ def summary_message(
         driven: The policy or behavior that drove all robots, in words; None if each had its own.
         left: Objects that left the world.
         zones: Results of the zones.
+        rounds: What to say of robots that patrol.
     """
     simulation, scenario, jumps = facts.simulation, facts.scenario, facts.incidents.jumps
     names = {robot.name for robot in robots}
@@ -79,15 +82,19 @@ def summary_message(
     contacts = facts.incidents.human_contacts
     said = bool(facts.jammed) or contacts[:1] == facts.hits[:1]
     share = facts.explored
+    hit = hit and hit + _standing_message(facts, names)
     parts = [
         between_steps_message(simulation, facts.between, facts.hits, brief=failed),
-        _arrivals_message(robots, facts.time, facts.parked),
+        hit if failed else None,  # the cause before what follows from it
+        rounds if rounds and len(robots) == 1 else _arrivals_message(robots, facts.time, facts.parked),
+        rounds if len(robots) > 1 else None,
         _waiting_message(facts),
         appearances_message(simulation),
-        hit and hit + _standing_message(facts, names),
+        None if failed else hit,
         exits_message(scenario, left),
         jumps_message(jumps, nearest_to_goals(simulation, jumps)),
         returns_message(facts.incidents.returns, names),
+        swings_message(facts),
         _departures_message(facts, robots),
         shunting_message(simulation, robots, facts.parked),
         None if pushes else closeness_message(robots),
@@ -130,7 +137,7 @@ def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequen
     if parked and robots[0].outcome == "timeout":
         return f"the robot is parked; {seconds(sim_time)} simulated"
     if robots[0].outcome == "collision":
-        return "the robot collided"  # the message about what it hit says when
+        return ""  # the message about what it hit says it all
     return f"the robot did not arrive within {seconds(sim_time)}"
 
 
@@ -225,9 +232,9 @@ def reason_message(facts: EpisodeFacts, robots: list[RobotResult], source: Horiz
     collided = {robot.name for robot in robots if robot.outcome == "collision"}
     if hit := _first_collision_message(facts.scenario, collided, facts.hits):
         others = len(collided) - 1
-        reasons.append(hit + (f" (in all {others + 1} robots collided)" if others else ""))
+        reasons.append(hit + (f" (in all {others + 1} robots collided)" if others else "") + _horizons(facts, collided))
     rows = {record.name: row for row, record in facts.robots.items()}
-    limit = f"{seconds(facts.time)} ({_LIMIT_SOURCES[source]})"
+    limit = f"the time limit of {seconds(facts.time)} ({_LIMIT_SOURCES[source]})"
     late = [robot for robot in robots if robot.outcome == "timeout" and robot.name not in facts.parked]
     if late:
         shown = late[:_MAX_NAMED]
@@ -243,12 +250,35 @@ def reason_message(facts: EpisodeFacts, robots: list[RobotResult], source: Horiz
     return "; ".join(reasons)
 
 
+def _horizons(facts: EpisodeFacts, collided: Collection[str]) -> str:
+    """How far ahead the robots of the first collision look, if their behaviors have such horizons; else empty."""
+    first = first_collision(collided, facts.hits)
+    if first is None or facts.policy is not None:
+        return ""
+    looks = []
+    for record in facts.robots.values():
+        options = record.active_behavior
+        options = getattr(options, "local", None) or options
+        ahead = getattr(options, "timeHorizon", None)
+        if ahead is None or record.name not in (first.object, first.partner):
+            continue
+        still = getattr(options, "timeHorizonObst", ahead)
+        static = "" if still == ahead else f", static ones {seconds(still)}"
+        looks.append(f"{quoted(record.name)} under {options.name} avoids others {seconds(ahead)} ahead{static}")
+    return f" ({'; '.join(looks)}: timeHorizon)" if looks else ""
+
+
 def _standing_message(facts: EpisodeFacts, names: Collection[str]) -> str:
     """Say which objects have stood still since the first collision stopped them; empty if both move."""
     simulation, first = facts.simulation, first_collision(names, facts.hits)
     rows = {record.name: row for row, record in enumerate(facts.scenario.objects) if not record.static}
     pair = [] if first is None else [name for name in (first.object, str(first.partner)) if name in rows]
     held = [name for name in pair if simulation.stopped[rows[name]] and not simulation.arrived[rows[name]]]
+    if facts.scenario.world.collision_mode == "unobstructed_obstacles":  # in which a touch ends
+        mine = [name for name in pair if name in names]
+        if held:
+            return f", and {quoted(held[0])} stands as long as they touch, while obstacles move on"
+        return ", stood while they touched, and then went on" if mine else ""
     if len(held) == 2:
         return ", and both have stood still since"
     return f", and {quoted(held[0])} has stood still since" if held else ""
@@ -258,10 +288,8 @@ def _first_collision_message(scenario: ResolvedScenario, names: Collection[str],
     first = first_collision(names, events)
     if first is None:
         return None
-    place = f"({first.x:.2f}, {first.y:.2f})"
-    return (
-        f"{called(scenario, first.object)} hit {called(scenario, first.partner)} at {seconds(first.time)} near {place}"
-    )
+    pair = f"{called(scenario, first.object)} hit {called(scenario, first.partner)}"
+    return f"{pair} at {seconds(first.time)}, contact near ({first.x:.2f}, {first.y:.2f})"
 
 
 def _state(facts: EpisodeFacts, row: int, robot: RobotResult) -> str:

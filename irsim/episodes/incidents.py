@@ -113,7 +113,7 @@ def jumps_message(jumps: dict[str, Event], nearest: Mapping[str, float]) -> str 
     first, others = next(iter(jumps.values())), len(jumps) - 1
     more = f" and {others} more after it" if others else ""
     near = nearest.get(first.object)
-    close = "" if near is None else f", at no step nearer than {metres(near)}"
+    close = "" if near is None else f", at no step from then on nearer than {metres(near)}"
     return (
         f"{quoted(first.object)} jumped over its goal at {seconds(first.time)}{close}{more} "
         f"(raise goal_threshold{' above that' if close else ''} or lower step_time)"
@@ -249,7 +249,7 @@ def shunting_message(simulation: Simulation, robots: Sequence[RobotResult], park
         time = (len(track) - 1 - first) * step_time
         if moved < 3 * _NEAR or time < _MIN_TIME:
             continue
-        least = "" if arrived is not None else f", no nearer than {metres(float(away.min()))}"
+        least = "" if arrived is not None else f", in the whole run no nearer than {metres(float(away.min()))}"
         shunting.append(
             f"{quoted(robot.name)} drove {metres(driven)} of a {metres(driven - moved + float(away[first]))} way, "
             f"{seconds(time)} of it to and fro at the goal{least}"

@@ -54,7 +54,7 @@ class Circle:
     def message(self) -> str:
         """Size of the circle, and what to change in the scenario."""
         return (
-            f"radius {self.radius:.1f} m, never nearer than {self.nearest:.2f} m "
+            f"radius {self.radius:.1f} m, on these circles never nearer than {self.nearest:.2f} m "
             "(raise goal_threshold, or let it turn more sharply)"
         )
 

@@ -19,11 +19,12 @@ from irsim.episodes.incidents import MAX_LISTED_EXITS, find_exits
 from irsim.episodes.obstructions import find_obstruction
 from irsim.episodes.opening import reproduce_command, seed_to_repeat
 from irsim.episodes.progress import find_circling, has_one_end, no_progress_since, stalled_step
+from irsim.episodes.rounds import laps_of, rounds_message
 from irsim.episodes.watching import goal_visibility, watched_metrics, zone_results
 from irsim.navigation.clearances import Approach, least
-from irsim.results.episode import EventRecord, Left, RobotResult
+from irsim.results.episode import EventRecord, Left, RobotResult, ZoneResult
 from irsim.results.findings import Finding
-from irsim.results.run import LOST_THINGS, HorizonSource, RunResult
+from irsim.results.run import LOST_THINGS, HorizonSource, RunResult, Until
 from irsim.simulation.events import BETWEEN_STEPS, SIGHTS, Event, first_events
 from irsim.simulation.outcome import robot_outcomes
 from irsim.simulation.trace import all_poses
@@ -58,6 +59,7 @@ class RunPlan:
         perturb: Perturbations of the scenario, as on the command line.
         bridges: Names of all bridges that are opened.
         added_bridges: Bridges that the scenario does not name, as on the command line.
+        until: When the run ends.
     """
 
     path: str | Path | None
@@ -71,6 +73,7 @@ class RunPlan:
     perturb: Sequence[str] = ()
     bridges: Sequence[str] = ()
     added_bridges: Sequence[str] = ()
+    until: Until = "done"
 
     @property
     def policy_text(self) -> str | None:
@@ -88,14 +91,17 @@ class RunPlan:
             options["perturb"] = list(self.perturb)
         if self.bridges:
             options["bridges"] = list(self.bridges)
+        if self.until != "done":
+            options["until"] = self.until
         return options
 
     def reproduce(self, seed: int | None) -> str:
         """The command that repeats the run; without a seed where the seed decides nothing."""
-        extra = [] if self.behavior is None else ["--behavior", self.behavior]
+        extra = [] if self.behavior is None else ["--policy", self.behavior]
         extra += [] if self.policy_text is None else ["--policy", self.policy_text]
         extra += [word for one in self.perturb for word in ("--perturb", one)]
         extra += [word for one in self.added_bridges for word in ("--bridge", one)]
+        extra += [] if self.until == "done" else ["--until", self.until]
         given = self.horizon if self.source in ("argument", "limits") else None
         return reproduce_command("run", self.path, seed, given, self.strict, self.imports, extra)
 
@@ -120,7 +126,7 @@ def run_result(
     facts = EpisodeFacts.of(simulation, events, plan.policy)
     scenario, seed = facts.scenario, simulation.key()[0]
     listed = _without_repeats(scenario, events)
-    robots, left, zones = _robots(facts), _exits(facts), zone_results(simulation, events)
+    robots, left, zones = _robots(facts, plan.until), _exits(facts), zone_results(simulation, events)
     ends = [robot.outcome for robot in robots]
     outcome: Literal["success", "collision", "timeout"] = "timeout"
     if ends and all(end == "success" for end in ends):
@@ -130,7 +136,7 @@ def run_result(
     reason: str | None = None
     if outcome != "success":
         reason = reason_message(facts, robots, plan.source) if lost is None else f"{lost.message}; the run ended"
-    summary, lost_code = summary_message(facts, robots, _driven_by(plan), left, zones), _lost_code(lost)
+    summary, lost_code = _summary(facts, robots, plan, left, zones), _lost_code(lost)
     if lost_code is not None:
         summary += f"; the {LOST_THINGS[lost_code]} was lost, which ended the run"
     return RunResult(
@@ -141,6 +147,7 @@ def run_result(
         policy=plan.policy_text,
         policy_digest=None if plan.policy is None else plan.policy.digest,
         perturb=list(plan.perturb),
+        until=plan.until,
         outcome=outcome,
         summary=summary,
         reason=reason,
@@ -169,11 +176,21 @@ def run_result(
     )
 
 
-def _robots(facts: EpisodeFacts) -> list[RobotResult]:
-    simulation, robots = facts.simulation, []
+def _summary(
+    facts: EpisodeFacts, robots: list[RobotResult], plan: RunPlan, left: list[Left], zones: dict[str, ZoneResult]
+) -> str:
+    rounds = rounds_message(facts, robots, plan.until, plan.horizon * facts.step_time)
+    return summary_message(facts, robots, _driven_by(plan), left, zones, rounds)
+
+
+def _robots(facts: EpisodeFacts, until: Until) -> list[RobotResult]:
+    simulation, robots, laps = facts.simulation, [], laps_of(facts)
     outcomes = robot_outcomes(simulation, events=facts.events)
     arrivals = first_events(facts.events, "arrival")
-    nearest = _approaches(facts, arrivals) if facts.is_small else {}
+    on = set(laps) if until == "time_limit" else set[str]()  # robots whose first arrival ends nothing
+    outcomes |= {name: "collision" for name in on if facts.hit_counts[name]}
+    ends = {name: event for name, event in arrivals.items() if name not in on}
+    nearest = _approaches(facts, ends) if facts.is_small else {}
     watched = watched_metrics(facts, arrivals)
     visible = goal_visibility(facts, arrivals) if facts.is_small else {}
     called = {item.name: item.called for item in facts.scenario.objects}
@@ -188,6 +205,7 @@ def _robots(facts: EpisodeFacts) -> list[RobotResult]:
                 name=name,
                 outcome="timeout" if ended == "running" else ended,
                 time_to_goal=None if arrival is None else arrival.time,
+                laps=laps.get(name),
                 collision_count=facts.hit_counts[name],
                 contacts_between_steps=facts.between.counts[name],
                 passed_through=facts.between.passed.get(name, []),

@@ -62,16 +62,19 @@ class ConciseRobot(BaseModel):
         facts = [f"{self.name!r} {self.outcome}"]
         if self.time_to_goal is not None:
             off = f", heading {more['heading_error']:.2f} rad off" if "heading_error" in more else ""
-            facts.append(f"arrived at {self.time_to_goal:g} s{off}")
+            laps = more.get("laps")
+            arrived = "arrived" if laps is None else f"arrived {plural(laps, 'time')}, first"
+            facts.append(f"{arrived} at {self.time_to_goal:g} s{off}")
         if self.distance_to_goal is not None:
             facts.append(f"{self.distance_to_goal:g} m from its goal")
         count = more.get("contacts_between_steps", 0)
         if self.min_clearance is not None:
             place, other = more.get("nearest_at"), more.get("nearest_called", repr(self.nearest))
-            at = "" if place is None else " at ({:g}, {:g})".format(*place)
-            near = f"came as near as {self.min_clearance + 0.0:g} m to {other}, edge to edge"
+            at = "" if place is None else " with its position at ({:g}, {:g})".format(*place)
+            near = f"came as near as {self.min_clearance + 0.0:g} m to {other}, edge to edge,"
             if self.min_clearance < 0:
-                near = f"overlapped {other} by {-self.min_clearance:g} m when they collided"
+                near = f"overlapped {other} by {-self.min_clearance:g} m when they collided,"
+            near = near if at else near.removesuffix(",")
             facts.append(near + at + (" at the ends of steps" if count else ""))
         facts.append(plural(self.collision_count, "collision"))
         if count:
@@ -121,10 +124,12 @@ class ConciseEvent(BaseModel):
 
     def text(self) -> str:
         """The event in words."""
-        link = " with" if self.kind in ("collision", *BETWEEN_STEPS) else ":"
+        touch = self.kind in ("collision", *BETWEEN_STEPS)
+        link = " with" if touch else ":"
         partner = "" if self.partner is None else f"{link} {self.partner!r}"
         place = f"({self.x:g}, {self.y:g})"
-        return f"{self.time:g} s, step {self.step}: {self.kind} of {self.object!r}{partner} at {place}"
+        at = ", contact at" if touch else " at"
+        return f"{self.time:g} s, step {self.step}: {self.kind} of {self.object!r}{partner}{at} {place}"
 
 
 class ConciseRun(BaseModel):
@@ -193,6 +198,7 @@ def _optional(robot: RobotResult, detailed: bool) -> dict[str, Any]:
     values["nearest_called"] = None if robot.nearest_called is None else clean(robot.nearest_called)
     values["nearest_at"] = None if robot.nearest_at is None else [rounded(value) for value in robot.nearest_at]
     values["heading_error"] = rounded(robot.heading_error)
+    values["laps"] = robot.laps
     values["contacts_between_steps"] = robot.contacts_between_steps or None
     values["passed_through"] = [clean(name) for name in robot.passed_through] or None
     return {key: value for key, value in values.items() if value is not None}

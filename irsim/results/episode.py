@@ -33,9 +33,11 @@ class EventRecord(Result):
     partner: str | None
     """Name of the other object in a contact, or of the object that is seen."""
     x: float
-    """Position of the object, or of the one that is seen; for a line, where it is crossed [m]."""
+    """Position of the object, or of the one that is seen; for a line, where it is crossed; for a contact, where the two
+    touch [m]."""
     y: float
-    """Position of the object, or of the one that is seen; for a line, where it is crossed [m]."""
+    """Position of the object, or of the one that is seen; for a line, where it is crossed; for a contact, where the two
+    touch [m]."""
     zone: str | None = None
     """Name of the zone."""
     direction: Literal["left_to_right", "right_to_left"] | None = None
@@ -60,9 +62,12 @@ class RobotResult(Result):
     name: str
     outcome: Literal["success", "collision", "timeout"]
     """``success``: arrived without a collision before; ``collision``: stopped by one, or arrived after one;
-    ``timeout``: neither."""
+    ``timeout``: neither. With ``until: time_limit`` every collision of a robot with ``loop`` or ``wander`` counts."""
     time_to_goal: float | None
     """Time of first arrival [s]; None when it never arrived."""
+    laps: int | None = None
+    """Number of times that a robot with ``loop`` came to the end of its waypoints (with one goal, to either end of its
+    way), or that one with ``wander`` came to a goal; None without them."""
     collision_count: int
     """Number of contacts that began."""
     contacts_between_steps: int = 0

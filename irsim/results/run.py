@@ -13,10 +13,21 @@ from irsim.results.concise import ConciseEvent, ConciseRobot, ConciseRun, is_com
 from irsim.results.episode import EventRecord, Left, RobotResult, ZoneResult
 from irsim.results.findings import Finding
 
-__all__ = ["LOST_THINGS", "MAX_CONCISE", "MAX_DETAILED", "HorizonSource", "ReplayResult", "RunResult", "RunTable"]
+__all__ = [
+    "LOST_THINGS",
+    "MAX_CONCISE",
+    "MAX_DETAILED",
+    "HorizonSource",
+    "ReplayResult",
+    "RunResult",
+    "RunTable",
+    "Until",
+]
 
 HorizonSource = Literal["argument", "scenario", "default", "limits"]
 """Where the time limit of a run comes from."""
+Until = Literal["done", "time_limit"]
+"""When a run ends: when every robot has arrived or stopped, as in IR-SIM, or at its time limit."""
 MAX_CONCISE = 10
 """Number of robots and events in a concise result."""
 MAX_DETAILED = 50
@@ -42,6 +53,9 @@ class RunResult(Result):
     """SHA-256 of the file of this policy; None without one."""
     perturb: list[str] = Field(default_factory=list)
     """Perturbations of starts, speeds and delays, as on the command line."""
+    until: Until = "done"
+    """``done``: the run ends when every robot has arrived or stopped, one with ``loop`` at the end of its first lap;
+    ``time_limit``: it goes on to its time limit."""
     outcome: Literal["success", "collision", "timeout"]
     """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``, also if the run
     ended early because something was ``lost``."""

@@ -20,6 +20,7 @@ from irsim.episodes.incidents import MAX_LISTED_EXITS, exits_message, find_exits
 from irsim.episodes.obstructions import find_obstruction, heading_message, jam_message, no_way_message
 from irsim.episodes.opening import MAX_TRIES, crowded_message, first_with_room
 from irsim.episodes.progress import find_circling, has_one_end, no_progress_since
+from irsim.episodes.rounds import when_it_ends
 from irsim.episodes.watching import zone_results, zones_message
 from irsim.results.episode import EventRecord
 from irsim.results.validation import DryRun, Stuck
@@ -151,6 +152,7 @@ def _summarise(
         summary="; ".join(
             [
                 _progress_message(trace, len(names), arrived, parked, ended, cut),
+                *filter(None, [when_it_ends(facts.robots.values())]),
                 *filter(None, [between_steps_message(env.simulation, facts.between, hits)]),
                 *_problem_messages(hits, stuck, count),
                 *filter(
@@ -266,7 +268,7 @@ def _problem_messages(hits: Sequence[Event], stuck: Sequence[Stuck], count: int)
     if hits:
         first = hits[0]
         several = f"{len(hits)} collisions, the first of " if len(hits) > 1 else "collision of "
-        place = f"at {seconds(first.time)} near ({first.x:.2f}, {first.y:.2f})"
+        place = f"at {seconds(first.time)}, contact near ({first.x:.2f}, {first.y:.2f})"
         parts.append(f"{several}'{first.object}' with '{first.partner}' {place}")
     if stuck:
         parts.append(f"'{stuck[0].name}' {stuck[0].doing} since {seconds(stuck[0].since)}: {stuck[0].why}")

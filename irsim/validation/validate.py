@@ -16,6 +16,7 @@ from irsim.scenario.autofix import repair_text
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import document_of
 from irsim.scenario.read import Reading, read
+from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.validation.diff.compare import compare
 from irsim.validation.dry_run import dry_run
 from irsim.validation.feasibility.check import feasibility_findings
@@ -59,6 +60,8 @@ def validate(
         _mark_old(report.findings, other)
     if simulate and reading.scenario is not None:
         report.dry_run = _dry_run_or_findings(report, reading, seed, limits)
+        if report.dry_run is not None:
+            _warn_of_collisions(report, reading.scenario, report.dry_run)
     return report
 
 
@@ -166,6 +169,21 @@ def _mark_old(findings: list[Finding], base: Reading) -> None:
     known = {(item.code, text) for item in base.diagnostics for text in (format_path(item.path), item.message)}
     for finding in findings:
         finding.in_base = bool({(finding.code, finding.path), (finding.code, finding.message)} & known)
+
+
+def _warn_of_collisions(report: ValidationReport, scenario: ResolvedScenario, tried: DryRun) -> None:
+    """Make hints that a robot dashes into an obstacle warnings if one of these robots has collided in the try."""
+    hit = {name for event in tried.collisions for name in (event.object, event.partner)}
+    entries = {format_path(record.path) for record in scenario.robots() if record.name in hit}
+    for finding in report.findings:
+        if finding.code != "dash-into-obstacle" or finding.severity != "hint":
+            continue
+        if any(finding.path.startswith(f"{entry}.") or finding.path == entry for entry in entries):
+            finding.severity = "warning"
+            finding.message += "; it collided when tried"
+            report.hints, report.warnings = report.hints - 1, report.warnings + 1
+    counted = f"; {plural(report.warnings, 'warning')}" if report.warnings else ""
+    report.summary = report.summary.partition(";")[0] + counted
 
 
 def _dry_run_or_findings(

@@ -304,7 +304,7 @@ robot:
     assert "raise goal_threshold" in stuck.why
     assert "'car' circles its goal since" in dry.summary
     result = irsim.run(text=car)
-    assert "'car' circles its goal: radius 1.5 m, never nearer than 1.16 m" in str(result.reason)
+    assert "'car' circles its goal: radius 1.5 m, on these circles never nearer than 1.16 m" in str(result.reason)
     assert irsim.run(text=car.replace("goal_threshold: 0.1", "goal_threshold: 1.3")).outcome == "success"
 
 
@@ -318,7 +318,9 @@ robot:
     assert (dry.parked, dry.stuck) == (["watcher"], [])
     assert "1 is parked" in dry.summary
     result = irsim.run(text=watcher)
-    assert str(result.reason).startswith("'watcher' is parked (cannot move, no goal written); the run ended at 2 s")
+    assert str(result.reason).startswith(
+        "'watcher' is parked (cannot move, no goal written); the run ended at the time limit of 2 s"
+    )
     assert result.robots[0].distance_to_goal is None
     assert irsim.api.snapshot(text=watcher).robots[0].goal is None
     aimed = irsim.run(text=watcher.replace("[1, 5]}", "[1, 5], goal: [1, 9]}"))

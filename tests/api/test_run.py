@@ -95,7 +95,10 @@ def test_what_starts_outside_has_not_left() -> None:
     ("scenario", "reason"),
     [
         (text(extra=""), "'rover' has no behavior, so it stands still 3.00 m from its goal"),
-        (text(19, world=", time_limit: 5"), "at 5 s (world.time_limit) 'rover' still moved at 1 m/s, 13.00 m from"),
+        (
+            text(19, world=", time_limit: 5"),
+            "at the time limit of 5 s (world.time_limit) 'rover' still moved at 1 m/s, 13.00 m from",
+        ),
         (text() + "obstacle:\n  - {name: crate, state: [2.5, 3], shape: {name: circle}}\n", "'rover' hit 'crate' at "),
         ("world: {width: 5}\n", "there are no robots"),
     ],
@@ -144,7 +147,7 @@ def test_another_behavior_for_all_robots(tmp_path: Path) -> None:
     result = irsim.run(path, behavior="dash")
     assert (result.outcome, result.behavior) == ("success", "dash")
     assert result.summary.startswith("with behavior dash for all robots: ")
-    assert result.reproduce == f"irsim run {path} --behavior dash"
+    assert result.reproduce == f"irsim run {path} --policy dash"
     again = CliRunner().invoke(app, [*shlex.split(result.reproduce)[1:], "--json"])
     assert json.loads(again.stdout) == result.model_dump(mode="json")
     assert not [item for item in result.warnings if item.code == "no-behavior"]
@@ -153,7 +156,7 @@ def test_another_behavior_for_all_robots(tmp_path: Path) -> None:
 def test_a_behavior_with_options_and_one_that_nobody_has() -> None:
     result = irsim.run(text=text(), behavior={"name": "orca", "timeHorizon": 3})
     assert result.behavior == "{name: orca, timeHorizon: 3}"
-    assert "--behavior '{name: orca, timeHorizon: 3}'" in result.reproduce
+    assert "--policy '{name: orca, timeHorizon: 3}'" in result.reproduce
     assert irsim.run(text=text(), behavior="as-written") == irsim.run(text=text())
     with pytest.raises(BenchmarkError, match=r"there is no policy 'orcaa'\. Fix: did you mean orca\?"):
         irsim.run(text=text(), behavior="orcaa")
@@ -246,8 +249,8 @@ robot:
 """
     result = irsim.run(text=crossing)
     assert result.outcome == "collision"
-    assert result.summary.startswith("3 of 3 robots arrived, the last at ")
-    assert ", 2 of them after a collision; 'a' hit 'b' at " in result.summary
+    assert result.summary.startswith("'a' hit 'b' at 4.9 s")
+    assert result.summary.endswith("; 3 of 3 robots arrived, the last at 10 s, 2 of them after a collision")
 
 
 TOUCHED = """

@@ -29,7 +29,7 @@ obstacle:
   - {name: board, shape: {name: rectangle, length: 0.02, width: 2}, state: [8.05, 3, 0]%s}
 """
 """A robot that moves 0.3 m per step grazes a post in step 14 and passes through a board in step 24."""
-THROUGH = "'runner' passed through 'board' between two steps at 2.31 s near (8.04, 3.00)"
+THROUGH = "'runner' passed through 'board' between two steps at 2.31 s, contact near (8.04, 3.00)"
 CURE = "('runner' moved 0.3 m in that step; lower step_time, or set world.contacts: swept)"
 
 
@@ -94,14 +94,16 @@ def test_the_reason_of_a_failure_begins_with_it() -> None:
     result = irsim.run(text=scene(limit=2.8))
     assert result.outcome == "timeout"
     assert result.reason is not None
-    assert result.reason.startswith(f"{THROUGH}, one of 2 contacts between steps {CURE}; at 2.8 s (world.time_limit) ")
+    assert result.reason.startswith(
+        f"{THROUGH}, one of 2 contacts between steps {CURE}; at the time limit of 2.8 s (world.time_limit) "
+    )
     assert result.summary.startswith(f"{THROUGH}, one of 2 contacts between steps; the robot did not arrive")
     assert result.decisive_step == 24
 
 
 def test_a_graze_is_told_with_its_overlap() -> None:
     result = irsim.run(text=scene(board=", unobstructed: true"))
-    what = "'runner' and 'post' touched between two steps at 1.32 s near (5.02, 3.08), overlapping by 0.03 m "
+    what = "'runner' and 'post' touched between two steps at 1.32 s, contact near (5.02, 3.08), overlapping by 0.03 m "
     assert result.summary.startswith(what + CURE)
     assert result.robots[0].passed_through == []
 
@@ -126,12 +128,12 @@ def test_swept_contacts_are_collisions_and_told_once() -> None:
     text = scene().replace("step_time: 0.1", "step_time: 0.1, contacts: swept")
     result = irsim.run(text=text)
     assert (result.outcome, result.decisive_step) == ("collision", 14)
-    assert result.reason == "'runner' hit 'post' at 1.32 s near (5.02, 3.08)"
+    assert result.reason == "'runner' hit 'post' at 1.32 s, contact near (5.02, 3.08)"
     assert (result.robots[0].collision_count, result.contacts_between_steps) == (1, 0)
     assert "between" not in result.summary
     driven = irsim.run(text=text.replace("contacts: swept", "contacts: swept, collision_mode: unobstructed"))
     assert driven.outcome == "collision"  # it drives on and arrives, after both
-    assert driven.reason == "'runner' hit 'post' at 1.32 s near (5.02, 3.08)"
+    assert driven.reason == "'runner' hit 'post' at 1.32 s, contact near (5.02, 3.08)"
     assert driven.robots[0].collision_count == 2
     assert "between two steps" not in driven.summary
 
@@ -183,7 +185,7 @@ def test_programs_see_them(workspace: Path, capsys: pytest.CaptureFixture[str]) 
     assert (env.robot.contacts_between_steps, env.events) == (0, [])
     env.end(ending_time=0.0)
     logged = capsys.readouterr().out
-    assert "runner passed through board between two steps at 2.313 s near (8.04, 3.00)" in logged
+    assert "runner passed through board between two steps at 2.313 s, contact near (8.04, 3.00)" in logged
     assert "runner touched post between two steps" in logged
 
 
@@ -269,7 +271,7 @@ def test_a_swept_contact_stops_a_robot_at_the_wall(workspace: Path) -> None:
     (workspace / "tunnel.yaml").write_text(SWEPT)
     shown = CliRunner().invoke(app, ["run", "tunnel.yaml", "--require-success"])
     assert shown.exit_code == 1
-    assert "'robot_0' hit 'obstacle_1' at 3.13 s near (9.99, 5.00)" in " ".join(shown.stdout.split())
+    assert "'robot_0' hit 'obstacle_1' at 3.13 s, contact near (9.99, 5.00)" in " ".join(shown.stdout.split())
     result = irsim.run("tunnel.yaml")
     assert (result.outcome, result.contacts_between_steps) == ("collision", 0)
     assert result.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)  # its radius before the face of the wall

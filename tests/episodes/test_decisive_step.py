@@ -35,7 +35,7 @@ def test_the_collision_of_robots_decides_and_not_an_earlier_one_of_obstacles() -
     assert (first.kind, first.object, first.step) == ("collision", "p", 4)
     assert result.outcome == "collision"
     assert result.decisive_step == 48
-    assert "'a' hit 'b' at 4.8 s near (6.00, 3.00), and both have stood still since" in result.summary
+    assert "'a' hit 'b' at 4.8 s, contact near (6.00, 3.00), and both have stood still since" in result.summary
 
 
 def test_success_has_no_decisive_step() -> None:
@@ -50,7 +50,7 @@ robot: {{{BODY}, state: [1, 3, 0], goal: [9.93, 3], vel_max: [2, 1.5], vel_min: 
 """
     result = irsim.run(text=text)
     assert (result.outcome, result.decisive_step) == ("timeout", 45)
-    assert "at no step nearer than 0.07 m" in result.summary
+    assert "at no step from then on nearer than 0.07 m" in result.summary
 
 
 def test_a_robot_that_is_caught_is_decided_when_it_ceases_to_get_on() -> None:

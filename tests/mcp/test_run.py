@@ -37,7 +37,9 @@ async def test_collision_names_both_the_place_and_the_step_to_look_at(client: Ca
     data, text = data_of(result), text_of(result)
     hit = data["events"][0]
     assert data["outcome"] == "collision"
-    assert f"'rover' hit 'crate' at {hit['time']:.1f} s near ({hit['x']:.2f}, {hit['y']:.2f})" in data["reason"]
+    assert (
+        f"'rover' hit 'crate' at {hit['time']:.1f} s, contact near ({hit['x']:.2f}, {hit['y']:.2f})" in data["reason"]
+    )
     assert (hit["kind"], hit["object"], hit["partner"]) == ("collision", "rover", "crate")
     assert f"render_snapshot run_id={data['run_id']} strip=6 step={hit['step']}" in data["next"]
     for said in (data["summary"], data["reason"], data["next"], "'rover' collision"):
@@ -283,7 +285,7 @@ async def test_a_success_that_passed_a_wall_is_told_and_not_trusted(client: Call
 async def test_a_wall_that_stops_the_robot_is_no_contact_between_steps(client: Caller) -> None:
     swept = await client.call("run_episode", scenario_yaml=SWEPT)
     pushed = await client.call("run_episode", scenario_yaml=CONTACT % 0.1)
-    assert text_of(swept).startswith("collision: the robot collided; 'robot_0' hit 'obstacle_1' at 3.13 s near (9.99")
+    assert text_of(swept).startswith("collision: 'robot_0' hit 'obstacle_1' at 3.13 s, contact near (9.99")
     assert "incidents" not in data_of(swept)
     assert data_of(pushed)["outcome"] == "timeout"
     assert "passed through" not in text_of(pushed)

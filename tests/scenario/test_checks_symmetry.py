@@ -129,7 +129,12 @@ def test_a_car_on_a_route_is_warned_of_a_goal_narrower_than_its_step() -> None:
         [overshoot] = reports(car(0.1, reverse), "goal-overshoot")
         assert overshoot.severity == "warning"
         assert words in overshoot.message
-    assert not reports(car(0.3, True), "goal-overshoot")
+    [overshoot] = reports(car(0.39, True), "goal-overshoot")
+    assert (overshoot.severity, overshoot.fix) == (
+        "warning",
+        "goal_threshold: 0.4 or more, a smaller step_time, or a lower vel_max",
+    )
+    assert not reports(car(0.4, True), "goal-overshoot")
 
 
 def test_the_summary_says_how_long_a_car_shunted_at_its_goal() -> None:

@@ -150,7 +150,7 @@ OBJECTS: dict[str, Code] = {
         "straight line to the goal is blocked",
         "'dash' drives straight to the goal and avoids nothing, and an obstacle is on that line. Example: an "
         "obstacle at [5, 5] between [1, 1] and [9, 9]; use rvo or orca to pass single obstacles, and 'follow' out of "
-        "dead ends and through buildings.",
+        "dead ends and through buildings. It is a hint, and a warning once a simulated try has collided.",
     ),
     "needs-planning": Code(
         "behavior does not plan a path around obstacles",
@@ -171,8 +171,9 @@ OBJECTS: dict[str, Code] = {
         "When one step (vel_max × step_time) is longer than twice 'goal_threshold', an object can jump over its goal, "
         "turn, and jump over it again: no behavior slows down so much that a step must end at the goal. "
         "Example: 3 m/s × 0.1 s = 0.3 m with goal_threshold 0.1; write goal_threshold: 0.2, or step_time: 0.05. "
-        "With a threshold of 0 no object ever arrives. A car under 'follow' cannot turn round on the spot: it shunts "
-        "back and forth at its goal, and without reverse it may never get there.",
+        "With a threshold of 0 no object ever arrives. A car, which cannot turn on the spot, needs a goal_threshold of "
+        "a whole step; else it is a warning: under 'dash' it may circle its goal, under 'follow' it shunts back and "
+        "forth there, and without reverse it may never get there.",
     ),
     "door-jam": Code(
         "robots can jam in a narrow passage",

@@ -194,10 +194,10 @@ def _unobstructed_robot(context: Context, record: ObjectRecord) -> Iterator[Find
 
 
 def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """Goals that a step can jump over again and again; cars on routes shunt there."""
+    """Goals that a step can jump over again and again; cars, which cannot turn on the spot, shunt or circle there."""
     options: Any = record.active_behavior
     drive: Any = record.kinematics
-    car = getattr(options, "name", "") == "follow" and drive.name == "acker"
+    car, on_route = getattr(drive, "steered", False), getattr(options, "name", "") == "follow"
     options = getattr(options, "local", options)
     name = getattr(options, "name", "")
     drives = name == "dash" or getattr(options, "avoids", False)
@@ -205,18 +205,20 @@ def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         return
     dt = context.scenario.world.step_time
     step = top_speed(record) * dt
-    if not 2 * record.goal_threshold * (1 + 1e-9) < step <= MAX_MAGNITUDE:
+    if not (1 if car else 2) * record.goal_threshold * (1 + 1e-9) < step <= MAX_MAGNITUDE:
         return
-    threshold = math.ceil(step / 2 * 100 + 1) / 100
+    threshold = math.ceil(round(step * 100, 6)) / 100 if car else math.ceil(step / 2 * 100 + 1) / 100
     effect = "it may overshoot its goal"
-    if car:
+    if car and not on_route:
+        effect = "it may pass its goal between two steps and then circle it, as it cannot turn on the spot"
+    elif car:
         backs = bool(record.vel_min) and record.vel_min[0] < 0
         effect = "it may shunt to and fro at its goal" if backs else "without reverse it may never get to its goal"
     report = warning if car else hint
     yield report(
         "goal-overshoot",
         record.path,
-        f"'{record.name}' drives {metres(step)} per step under '{name}': {effect}, which counts as reached within "
+        f"'{record.name}' drives {metres(step)} per step under '{name}': {effect}; the goal counts as reached within "
         f"{record.goal_threshold:g} m",
         fix=f"goal_threshold: {threshold:g} or more, a smaller step_time, or a lower vel_max",
     )

@@ -165,7 +165,8 @@ class WorldModel(Options):
     """Driver of the robot chosen in `gui.keyboard`: its behavior (`auto`) or the `keyboard`."""
     collision_mode: Literal["stop", "unobstructed", "unobstructed_obstacles", "reactive", "contact"] = "stop"
     """Effect of a collision: it stops both objects (`stop`), has no effect (`unobstructed`, `reactive`), stops robots
-    only (`unobstructed_obstacles`), or lets bodies push and slide (`contact`)."""
+    only (`unobstructed_obstacles`): a robot stands as long as the two touch and goes on when the obstacle has moved
+    away, or lets bodies push and slide (`contact`)."""
     contacts: Annotated[Literal["step_end", "swept"], BeforeValidator(_normalize_word)] = "step_end"
     """Which contacts are collisions: those at the ends of steps, as in IR-SIM 2.12 (`step_end`), or those within steps,
     too, where objects that stop at a collision stop where they first touch (`swept`). Contacts within a step are found
