@@ -10,7 +10,7 @@ import numpy as np
 
 from irsim.metrics import statistics
 
-__all__ = ["Interval", "mcnemar", "mean_pass_hat_k", "paired_bootstrap", "pass_hat_k", "wilson"]
+__all__ = ["Interval", "mcnemar", "mean_pass_hat_k", "paired_bootstrap", "pass_hat_k", "sign_flip", "wilson"]
 
 _SAMPLES = 10_000
 """Number of draws of a bootstrap."""
@@ -111,6 +111,31 @@ def paired_bootstrap(differences: Mapping[str, Sequence[float]], *, seed: int = 
     sums = table[drawn].sum(axis=1)
     low, high = np.quantile(sums[:, 0] / sums[:, 1], [(1 - _LEVEL) / 2, (1 + _LEVEL) / 2])
     return Interval(float(table[:, 0].sum() / table[:, 1].sum()), float(low), float(high))
+
+
+def sign_flip(differences: Mapping[str, Sequence[float]], *, seed: int = 0) -> float:
+    """Two-sided p value of a paired permutation test of the mean difference, by family.
+
+    Were both equally good, the differences of each family might as well have the other sign. With few families all
+    signs are tried, else as many as a bootstrap has draws.
+
+    Args:
+        differences: Family → difference of each of its pairs.
+        seed: Seed of the draws.
+
+    Returns:
+        Share of the signs with a mean at least as far from 0; 1 without pairs.
+    """
+    sums = np.array([math.fsum(values) for _, values in sorted(differences.items()) if len(values)])
+    if not len(sums):
+        return 1.0
+    if 2 ** len(sums) <= _SAMPLES:
+        drawn = np.arange(2 ** len(sums))[:, None] >> np.arange(len(sums)) & 1
+    else:
+        drawn = np.random.default_rng(seed).integers(0, 2, (_SAMPLES, len(sums)))
+        drawn[0] = 1
+    totals = np.abs((2 * drawn - 1) @ sums)
+    return float(np.mean(totals >= abs(sums.sum()) * (1 - 1e-9)))
 
 
 def _check_counts(passed: float, total: int) -> None:

@@ -10,9 +10,10 @@ from typing import Any
 import pytest
 
 import irsim.metrics
+from irsim_evals.grader.outcome import Cost
 from irsim_evals.report.comparison import compare, smallest_difference
 from irsim_evals.results import Trial
-from irsim_evals.statistics import mcnemar, mean_pass_hat_k, paired_bootstrap, pass_hat_k, wilson
+from irsim_evals.statistics import mcnemar, mean_pass_hat_k, paired_bootstrap, pass_hat_k, sign_flip, wilson
 from tests.evals.conftest import file_of, irsim_evals, refusal, trial
 
 
@@ -50,7 +51,8 @@ def test_json_says_the_same(tmp_path: Path) -> None:
     assert data["difference"]["estimate"] == pytest.approx(11 / 20)
     assert data["difference"]["low"] < 11 / 20 < data["difference"]["high"]
     assert data["means_something"] is True
-    assert data["sentence"].endswith("often goes unnoticed.")
+    assert data["sentence"].endswith("20 cases would show a difference of 48 points.")
+    assert data["sentences"] == [data["sentence"]]
 
 
 def test_folders_of_reports_can_be_compared(tmp_path: Path) -> None:
@@ -115,7 +117,7 @@ def test_no_change_says_so() -> None:
 def test_one_case_more_may_be_chance_and_ten_more_are_not() -> None:
     before = [trial(f"case-{k}", k < 10) for k in range(30)]
     one_more, ten_more = ([trial(f"case-{k}", k < n) for k in range(30)] for n in (11, 20))
-    assert "may be chance" in compare(before, one_more, "a", "b").sentence
+    assert "no difference that chance would not explain. 30 cases" in compare(before, one_more, "a", "b").sentence
     assert "hardly chance" in compare(before, ten_more, "a", "b").sentence
 
 
@@ -127,6 +129,49 @@ def test_cases_of_one_family_say_less_than_independent_ones() -> None:
         return interval.high - interval.low
 
     assert width(lambda k: f"family-{k % 4}") > 1.5 * width(lambda k: f"family-{k}")
+
+
+def with_costs(calls: Any, family: Any = str, count: int = 24) -> list[Trial]:
+    return [
+        trial(f"case-{k}", True, family=family(k), cost=Cost(calls=calls(k), tokens=100 * calls(k)))
+        for k in range(count)
+    ]
+
+
+def test_fewer_calls_are_told_from_chance() -> None:
+    before, fewer = with_costs(lambda k: 5 + k % 3), with_costs(lambda k: 4 + k % 2)
+    calls, tokens = compare(before, fewer, "A", "B").sentences[1:]
+    assert calls == "B needs 1.5 calls fewer a case (95 %: 1.1 to 1.9; 6.0 before, 4.5 now, 24 cases)."
+    assert tokens.startswith("B needs 150 tokens fewer a case (95 %: ")
+    assert "A needs 1.5 calls more a case" in compare(fewer, before, "B", "A").sentences[1]
+    other = with_costs(lambda k: 5 + (k + 1) % 3)
+    assert (
+        compare(before, other, "A", "B")
+        .sentences[1]
+        .startswith("No difference in calls that chance would not explain (95 %: -0.")
+    )
+
+
+def test_calls_of_one_family_or_of_few_cases_may_be_chance() -> None:
+    sides = [with_costs(calls, lambda k: f"family-{k % 3}") for calls in (lambda k: 6, lambda k: 5)]
+    assert "chance would not explain" in compare(*sides, "A", "B").sentences[1]
+    sides = [with_costs(calls, count=5) for calls in (lambda k: 6, lambda k: 5)]
+    assert "chance would not explain" in compare(*sides, "A", "B").sentences[1]
+
+
+def test_attempts_without_a_cost_are_left_out() -> None:
+    before = [*with_costs(lambda k: 3, count=8), trial("case-8", True)]
+    (calls, _) = compare(before, with_costs(lambda k: 2, count=9), "A", "B").costs
+    assert (calls.pairs, calls.before, calls.after) == (8, 3, 2)
+    assert compare([trial("one", True)], [trial("one", True)], "A", "B").costs == []
+
+
+def test_a_permutation_test_counts_the_signs():
+    assert sign_flip({str(k): [1.0] for k in range(6)}) == 2 / 64
+    assert sign_flip({"a": [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]}) == 1
+    assert sign_flip({}) == 1
+    assert sign_flip({str(k): [1.0] for k in range(40)}) <= 2 / 10_000
+    assert sign_flip({str(k): [(-1.0) ** k] for k in range(40)}) == 1
 
 
 @pytest.mark.parametrize(

@@ -165,7 +165,8 @@ def _show(one: Comparison) -> None:
         if names:
             rest = f" and {len(names) - _MAX_NAMES} more" if len(names) > _MAX_NAMES else ""
             out.print(f"{word} {side}: {', '.join(names[:_MAX_NAMES])}{rest}", soft_wrap=True)
-    out.print(one.sentence, soft_wrap=True)
+    for sentence in one.sentences:
+        out.print(sentence, soft_wrap=True)
 
 
 def _partial(change: object) -> bool:

@@ -10,6 +10,7 @@ import json
 import math
 import statistics
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from irsim.common.text import escape_marks
@@ -37,7 +38,7 @@ def as_benchmark(content: Content) -> str:
         "run_summary": {
             arm.arm: _run_summary([trial for trial in trials if trial.arm == arm.arm]) for arm in content.arms
         },
-        "notes": [one.sentence for one in content.comparisons],
+        "notes": [text for one in content.comparisons for text in one.sentences],
     }
     return escape_marks(json.dumps(plain(data), indent=1, ensure_ascii=False)) + "\n"
 
@@ -71,7 +72,8 @@ def comparison_data(one: Comparison) -> dict[str, Any]:
         "first": one.first, "second": one.second, "pairs": one.pairs, "passed": list(one.passed),
         "fixed": changes(one.fixed), "broken": changes(one.broken), "missing": one.missing, "new": one.new,
         "p": one.p, "difference": one.difference._asdict(), "smallest_difference": one.smallest,
-        "means_something": one.means_something, "sentence": one.sentence,
+        "means_something": one.means_something, "sentence": one.sentence, "sentences": one.sentences,
+        "costs": [{**asdict(cost), "difference": cost.difference._asdict()} for cost in one.costs],
     }  # fmt: skip
     result: dict[str, Any] = plain(data)
     return result

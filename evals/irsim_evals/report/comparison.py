@@ -7,16 +7,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from irsim_evals.grader.outcome import name_of
-from irsim_evals.report.summary import attempts
+from irsim_evals.report.summary import MAX_COST, attempts
 from irsim_evals.results import Trial
-from irsim_evals.statistics import Interval, mcnemar, paired_bootstrap
+from irsim_evals.statistics import Interval, mcnemar, paired_bootstrap, sign_flip
 
-__all__ = ["Change", "Comparison", "compare", "smallest_difference"]
+__all__ = ["Change", "Comparison", "CostDifference", "compare", "smallest_difference"]
 
 _LEVEL = 0.05
 """A p value below this counts as a difference."""
 _Z_TEST, _Z_POWER = 1.959963984540054, 0.8416212335729143
 """Quantiles of the normal distribution for a two-sided test at 5 % and for a chance of 80 % to notice a difference."""
+_UNITS = ("calls", "tokens")
+"""Costs that are compared."""
 _USUAL_SHARE = 0.1
 """Share of cases that is expected to change at least, where fewer did."""
 
@@ -46,6 +48,48 @@ class Change:
 
 
 @dataclass(frozen=True)
+class CostDifference:
+    """How much more or less the second set needs.
+
+    Attributes:
+        unit: What is counted: calls or tokens.
+        pairs: Number of cases whose cost both know.
+        before, after: Mean of a case in the first and in the second set.
+        difference: Mean difference with its 95 % interval, drawn by family.
+        p: p value of a permutation test, by family.
+    """
+
+    unit: str
+    pairs: int
+    before: float
+    after: float
+    difference: Interval
+    p: float
+
+    @property
+    def means_something(self) -> bool:
+        """Whether the difference is hardly chance."""
+        return _hardly_chance(self.p, self.difference)
+
+    def sentence(self, name: str) -> str:
+        """The result in words, such as ``B needs 1.2 calls fewer a case (95 %: 0.4 to 2.1)``.
+
+        Args:
+            name: Name of the second set.
+        """
+        by, low, high = self.difference
+        means = f"{_short(self.before)} before, {_short(self.after)} now, {self.pairs} cases"
+        if not self.means_something:
+            words = (
+                f"No difference in {self.unit} that chance would not explain (95 %: {_signed(low)} to {_signed(high)}"
+            )
+            return f"{words} a case; {means})."
+        low, high = sorted((abs(low), abs(high)))
+        word = f"{self.unit} {'more' if by > 0 else 'fewer'}"
+        return f"{name} needs {_short(abs(by))} {word} a case (95 %: {_short(low)} to {_short(high)}; {means})."
+
+
+@dataclass(frozen=True)
 class Comparison:
     """Two sets of trials.
 
@@ -59,6 +103,7 @@ class Comparison:
         difference: Mean difference of the shares of passes with its 95 % interval, drawn by family.
         smallest: Smallest difference that is noticed with a chance of 80 % at this number of cases; None if no
             difference is.
+        costs: Differences in calls and tokens, as far as both sets know them.
         repeated: Whether there are several attempts at a case.
     """
 
@@ -73,12 +118,18 @@ class Comparison:
     p: float
     difference: Interval
     smallest: float | None
+    costs: list[CostDifference]
     repeated: bool = False
 
     @property
     def means_something(self) -> bool:
         """Whether the difference is hardly chance: a small p value, and an interval without 0."""
-        return self.p < _LEVEL and (self.difference.low > 0 or self.difference.high < 0)
+        return _hardly_chance(self.p, self.difference)
+
+    @property
+    def sentences(self) -> list[str]:
+        """The result in words: passes, and then what answers cost."""
+        return [self.sentence, *(cost.sentence(self.second) for cost in self.costs)]
 
     @property
     def sentence(self) -> str:
@@ -97,16 +148,13 @@ class Comparison:
         elif not self.fixed and not self.broken:
             verdict = "no case changed"
         else:
-            verdict = "the difference may be chance"
+            verdict = "no difference that chance would not explain"
         apart = len(self.missing) + len(self.new)
         if apart:
             verdict += f"; {apart} {'case is' if apart == 1 else 'cases are'} left out, which only one of them has"
         if self.smallest is None:
             return f"{counts}: {verdict}. {self.pairs} cases are too few to show any difference."
-        return (
-            f"{counts}: {verdict}. With {self.pairs} cases a difference below {100 * self.smallest:.0f} points "
-            "often goes unnoticed."
-        )
+        return f"{counts}: {verdict}. {self.pairs} cases would show a difference of {100 * self.smallest:.0f} points."
 
 
 def compare(before: Sequence[Trial], after: Sequence[Trial], first: str, second: str) -> Comparison:
@@ -145,8 +193,43 @@ def compare(before: Sequence[Trial], after: Sequence[Trial], first: str, second:
         p=mcnemar(len(broken), len(fixed)),
         difference=paired_bootstrap(differences),
         smallest=smallest_difference(len(common), changed / len(common) if common else 0.0),
+        costs=[cost for unit in _UNITS if (cost := _cost(unit, [(one[key], two[key]) for key in common])) is not None],
         repeated=any(len(side[key]) > 1 for side in (one, two) for key in common),
     )
+
+
+def _cost(unit: str, pairs: Sequence[tuple[Sequence[Trial], Sequence[Trial]]]) -> CostDifference | None:
+    """The difference in calls or tokens; None if no case has them in both sets, or none needs any."""
+    means = [(_mean_cost(unit, a), _mean_cost(unit, b), a[0].family) for a, b in pairs]
+    known = [(a, b, family) for a, b, family in means if a is not None and b is not None]
+    differences: dict[str, list[float]] = {}
+    for a, b, family in known:
+        differences.setdefault(family, []).append(b - a)
+    before, after = [a for a, _, _ in known], [b for _, b, _ in known]
+    if not any(before + after):
+        return None
+    return CostDifference(
+        unit, len(known), math.fsum(before) / len(known), math.fsum(after) / len(known),
+        paired_bootstrap(differences), sign_flip(differences),
+    )  # fmt: skip
+
+
+def _mean_cost(unit: str, trials: Sequence[Trial]) -> float | None:
+    values = [getattr(trial.verdict.cost, unit) for trial in trials]
+    known = [value for value in values if value is not None and value < MAX_COST]
+    return math.fsum(known) / len(known) if known else None
+
+
+def _hardly_chance(p: float, difference: Interval) -> bool:
+    return p < _LEVEL and (difference.low > 0 or difference.high < 0)
+
+
+def _short(value: float) -> str:
+    return f"{value:,.0f}" if abs(value) >= 100 else f"{value:.1f}"
+
+
+def _signed(value: float) -> str:
+    return f"{'+' if value > 0 else ''}{_short(value)}"
 
 
 def smallest_difference(pairs: int, changing: float) -> float | None:

@@ -26,7 +26,7 @@ def markdown(content: Content) -> str:
         f"# {_safe(content.title)}",
         _arms(content.arms),
         "Intervals are Wilson's at 95 %, with each case as one observation.",
-        *(_safe(one.sentence, 600) for one in content.comparisons),
+        *(_safe(" ".join(one.sentences), 900) for one in content.comparisons),
         "## Where answers fail",
         _funnel(content.arms),
         *(

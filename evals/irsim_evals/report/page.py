@@ -76,7 +76,7 @@ def sections(content: Content) -> str:
         parts.append(
             _section(
                 "One arm against the next",
-                "".join(f"<p>{escaped(one.sentence, 600)}</p>" for one in content.comparisons),
+                "".join(f"<p>{escaped(text, 600)}</p>" for one in content.comparisons for text in one.sentences),
             )
         )
     if content.proof is not None:
