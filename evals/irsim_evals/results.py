@@ -9,12 +9,11 @@ from typing import Any
 from pydantic import ConfigDict
 
 import irsim
-from irsim.common.hashing import digest
 from irsim.common.text import escape_marks
-from irsim_evals.cases.store import Instance, case_ids, folder
+from irsim_evals.cases.store import PUBLISHED, Instance, Store, cases_hash
 from irsim_evals.grader.outcome import Record, Verdict
 
-__all__ = ["Results", "Trial", "cases_hash", "read_results", "results_of", "trial_of", "write_results"]
+__all__ = ["Results", "Trial", "read_results", "results_of", "trial_of", "write_results"]
 
 
 class Trial(Record):
@@ -61,11 +60,6 @@ class Results(Record):
     trials: list[Trial] = []
 
 
-def cases_hash() -> str:
-    """Digest of all case files."""
-    return digest(*((folder("cases") / f"{case_id}.yaml").read_bytes() for case_id in case_ids()))[:16]
-
-
 def trial_of(instance: Instance, verdict: Verdict, arm: str, **more: Any) -> Trial:
     """A trial with what the case says about it.
 
@@ -83,9 +77,9 @@ def trial_of(instance: Instance, verdict: Verdict, arm: str, **more: Any) -> Tri
     )  # fmt: skip
 
 
-def results_of(trials: Iterable[Trial]) -> Results:
+def results_of(trials: Iterable[Trial], store: Store = PUBLISHED) -> Results:
     """Results with the digest of the present cases."""
-    return Results(cases=cases_hash(), trials=list(trials))
+    return Results(cases=cases_hash(store), trials=list(trials))
 
 
 def write_results(results: Results, path: Path) -> None:

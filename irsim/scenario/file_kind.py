@@ -87,13 +87,18 @@ class FileKind(Generic[Model]):
         known = self.names()
         return word in known or (not path.suffix and not path.exists() and any(is_slip_of(word, one) for one in known))
 
-    def read(self, document: Document) -> Model:
-        """Check a document; all of its problems are in the exception that ``error`` makes."""
+    def read(self, document: Document, context: Any = None) -> Model:
+        """Check a document; all of its problems are in the exception that ``error`` makes.
+
+        Args:
+            document: The document.
+            context: What validators of the model know besides.
+        """
         errors = [item for item in document.problems if item.severity == "error"]
         if errors and (document.fatal or document.data is None):
             raise self.error(document, errors)
         try:
-            content = self.model.model_validate(document.data)
+            content = self.model.model_validate(document.data, context=context)
         except ValidationError as failure:
             wrong = [located(item, document) for item in self.explain(failure, document, self.model)]
             raise self.error(document, [*errors, *wrong]) from None

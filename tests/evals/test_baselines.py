@@ -116,7 +116,7 @@ def test_baselines_see_the_request_only(name):
     [
         (["--arm", "repear"], "did you mean repair"),
         ([], "no arm says who answers"),
-        (["--arm", "null", "pub-1"], "no case or category is called 'pub-1'"),
+        (["--arm", "null", "pub-1"], "no case, category or set is called 'pub-1'"),
         (["--arm", "null", "--output", __file__], "is a file"),
     ],
 )

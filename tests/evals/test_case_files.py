@@ -2,13 +2,31 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Any
 
 import pytest
 from pydantic import ValidationError
 
 from irsim_evals.cases.model import Assertion
+from irsim_evals.cases.store import Store, all_case_ids, case_ids
+from irsim_evals.cli.choice import chosen
 from irsim_evals.grader.properties import PROPERTIES
+from tests.evals.conftest import EVALS, RIGHT, irsim_evals, refusal
+
+CASE_TEXT = """\
+id: own
+title: One robot
+category: [basic]
+level: 1
+prompt: One robot, please.
+assert:
+  - {id: robots, count: {of: robots, number: 1}}
+  - {id: small, each: {of: robots, has: {radius: {le: 0.4}}}}
+pins:
+  - {of: robots, facts: count}
+"""
 
 SLIPS: list[tuple[dict[str, Any], str]] = [
     ({"each": {"of": "robots", "has": {"radus": 0.3}}}, "radius"),
@@ -38,3 +56,139 @@ def test_every_property_has_its_sentence() -> None:
     for name, one in PROPERTIES.items():
         assert one.sentence[0].isupper() or one.sentence.startswith("``"), name
         assert one.sentence.endswith("."), name
+
+
+def written(folder: Path, name: str, text: str) -> Path:
+    """Write a case file."""
+    file = folder / f"{name}.yaml"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+def gold(folder: Path, case: str, answer: str, radius: float = 0.35) -> None:
+    """Write a gold."""
+    place = folder / case / answer
+    place.mkdir(parents=True)
+    (place / "scenario.yaml").write_text(RIGHT.replace("0.35", f"{radius}"), encoding="utf-8")
+
+
+def said(*words: object) -> tuple[int, str]:
+    done = irsim_evals(*words)
+    assert "internal-error" not in done.output
+    return done.exit_code, done.output
+
+
+WRONG = """\
+id: slips
+title: Slips
+category: [basic]
+level: 5
+promt: hello
+parameters:
+  width: {default: 3, choose: [2.5, 3]}
+let:
+  twice: widht * 2
+select:
+  boxes: {among: solid, shpe: 3, having: {radus: 3}}
+assert:
+  - {id: a, cuont: {of: robots, number: 1}}
+  - {id: b, each: {of: robts, has: {radius: {eqq: 3}}}}
+  - {id: c, world: {height: $(heigth)}}
+  - {id: d, count: {of: boxes, number: 1}, world: {width: 10}}
+  - {id: e, facing: {of: boxes, toward: nort}}
+episodes:
+  - seconds: long
+    assert: [{id: f, arrive: {of: boxs}}]
+"""
+
+
+def test_every_problem_of_a_file_is_said_at_once_with_its_place_and_a_fix(tmp_path: Path) -> None:
+    file = written(tmp_path, "slip", WRONG)
+    code, text = said("check", file)
+    assert code == 2
+    for line, column, what in [
+        (1, 1, "'prompt' is missing"),
+        (1, 5, "the file is called slip, and its id is 'slips'"),
+        (4, 8, "'level' must be ≥ 1 and ≤ 4, got 5"),
+        (5, 1, "fix: rename it to 'prompt'"),
+        (9, 10, "it cannot be computed: expression cannot contain widht"),
+        (11, 18, "there is no selection 'solid'"),
+        (11, 25, "'shpe' is not a key of 'select.boxes'"),
+        (11, 43, "fix: write radius"),
+        (13, 13, "fix: rename it to 'count'"),
+        (14, 24, "fix: write robots"),
+        (14, 46, "fix: rename it to 'eq'"),
+        (15, 29, "it cannot be computed: expression cannot contain heigth"),
+        (16, 5, "give exactly one predicate"),
+        (17, 41, "fix: write north"),
+        (19, 14, "'long' is not a number with a unit"),
+        (20, 35, "fix: write boxes"),
+    ]:
+        assert f"{file}:{line}:{column}  error" in text
+        assert what in text
+    assert "16 errors" in text
+
+
+def test_a_bad_file_is_named_and_the_others_are_used(tmp_path: Path) -> None:
+    cases = tmp_path / "cases"
+    written(cases, "own", CASE_TEXT)
+    written(cases / "more", "other", CASE_TEXT.replace("id: own", "id: other"))
+    written(cases, "broken", "id: broken\nprompt: [\n")
+    written(cases, "slip", WRONG.replace("slips", "slip"))
+    for words in (["cases"], ["export", tmp_path / "out"]):
+        code, text = said(*words, "--cases", cases)
+        assert code == 2
+        assert f"{cases}/broken.yaml:" in text
+        assert "left out: broken, slip" in text
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["own"]
+    assert {"own", "other"} <= {line.split(" ")[0] for line in said("cases", "--cases", cases)[1].splitlines()}
+    code, text = said("check", "--cases", cases)
+    assert code == 2
+    assert "other.yaml: valid: case other, 2 assertions" in text
+    assert "own.yaml: valid: case own, 2 assertions" in text
+
+
+def test_cases_of_another_folder_are_exported_graded_and_proved(tmp_path: Path) -> None:
+    cases, golds = tmp_path / "cases", tmp_path / "answers"
+    written(cases, "own", CASE_TEXT)
+    written(cases / "more", "other", CASE_TEXT.replace("id: own", "id: other"))
+    for case in ("own", "other"):
+        gold(golds, case, "one")
+        gold(golds, case, "two", 0.34)
+    folders = ["--cases", cases, "--golds", golds]
+    assert said("cases", "more", "--json", *folders)[1].count('"id"') == 1
+    assert said("export", tmp_path / "out", *folders)[0] == 0
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["own"]
+    (tmp_path / "out" / "own" / "scenario.yaml").write_text(RIGHT, encoding="utf-8")
+    results = tmp_path / "me.json"
+    assert said("grade", tmp_path / "out", *folders, "-o", results)[0] == 0
+    assert said("check", "--grade", *folders)[0] == 0
+    assert said("report", results, "-o", tmp_path / "report", "--no-pictures", *folders)[0] == 0
+    (golds / "other" / "two" / "scenario.yaml").write_text("world: {}\n", encoding="utf-8")
+    (golds / "own" / "two" / "scenario.yaml").unlink()
+    (golds / "own" / "two").rmdir()
+    code, text = said("check", "--grade", *folders)
+    assert code == 2
+    assert f"{golds}/own holds 1 right answer, and each case needs 2" in text
+    assert f"{golds}/other/two does not pass: robots: robots: 0" in text
+
+
+def test_a_set_is_proved_and_listed_with_the_cases_and_run_if_it_is_named() -> None:
+    store = Store(EVALS / "cases", EVALS / "golds")
+    assert set(case_ids(store)) <= set(case_ids(store, sets=True)) <= set(all_case_ids(store))
+    assert "library-aisle" not in case_ids(store, sets=True)
+    assert len(chosen(["skills"], store)) > len(chosen(["irsim-scenario"], store)) > 4
+    assert "did you mean irsim-runner?" in refusal("cases", "irsim-runer")
+
+
+@pytest.mark.slow(10)
+def test_what_is_proved_of_another_folder(tmp_path: Path) -> None:
+    written(tmp_path / "cases", "own", CASE_TEXT)
+    written(tmp_path / "cases", "slip", WRONG)
+    gold(tmp_path / "golds", "own", "one")
+    gold(tmp_path / "golds", "own", "two", 0.34)
+    code, text = said("prove", "--quick", "--cases", tmp_path / "cases")
+    assert code == 1  # this case is too weak: some templates pass it
+    assert re.search("gold +gold +4 ", text)
+    assert "slip.yaml:1:1  error missing-key" in text

@@ -7,6 +7,7 @@ import typer
 from irsim.cli.guard import handle_errors
 from irsim.cli.output import prepare_streams
 from irsim_evals.cli.cases import cases, export, schema
+from irsim_evals.cli.check import check
 from irsim_evals.cli.grade import grade
 from irsim_evals.cli.prove import prove
 from irsim_evals.cli.report import compare, report
@@ -22,7 +23,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (cases, export, grade, run, report, compare, prove, schema):
+for _command in (cases, export, grade, run, report, compare, check, prove, schema):
     app.command()(handle_errors(_command))
 
 

@@ -4,52 +4,35 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from irsim.cli.output import console
-from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.model import schema_text
-from irsim_evals.cases.store import Instance, all_case_ids, case_ids, case_of, raw_case, write_given
+from irsim_evals.cases.store import Instance, write_given
+from irsim_evals.cli.choice import CasesFolder, GoldsFolder, Wanted, chosen, end_with, read_cases, store_of
 from irsim_evals.grader.outcome import name_of
 
-__all__ = ["PROMPT_FILE", "cases", "chosen", "export", "schema", "write_case"]
+__all__ = ["PROMPT_FILE", "cases", "export", "schema", "write_case"]
 
 PROMPT_FILE = "prompt.md"
 """File with the prompt of a case."""
 _PATH = Path("schema") / "eval-case.schema.json"
 
 
-def chosen(wanted: Sequence[str] | None) -> list[str]:
-    """Ids of the cases that were asked for, by id or by category; without a wish all that count.
-
-    Raises:
-        ArgumentError: No case has that id or category.
-    """
-    if not wanted:
-        return case_ids()
-    known = all_case_ids()
-    ids: list[str] = []
-    for word in wanted:
-        of_category = [name for name in known if word in raw_case(name).get("category", ())]
-        if word not in known and not of_category:
-            hint = suggestion(word, known, None)
-            raise ArgumentError(f"no case or category is called {word!r}", hint or "list them with irsim-evals cases")
-        ids += [word] if word in known else of_category
-    return list(dict.fromkeys(ids))
-
-
 def cases(
-    wanted: Annotated[list[str] | None, typer.Argument(metavar="[CASE]...", help="Ids or categories.")] = None,
+    wanted: Wanted = None,
     fresh: Annotated[int | None, typer.Option(help="Seed of a fresh instance: other numbers, names and words.")] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    cases_folder: CasesFolder = None,
+    golds_folder: GoldsFolder = None,
 ) -> None:
     """List cases, or show the prompts of some."""
-    instances = [case_of(name, fresh) for name in chosen(wanted)]
+    store = store_of(cases_folder, golds_folder)
+    instances, bad = read_cases(chosen(wanted, store, sets=True), store, [fresh])
     if json_output:
         rows = [
             {
@@ -62,7 +45,7 @@ def cases(
             for i in instances
         ]
         sys.stdout.write(json.dumps(rows, ensure_ascii=False) + "\n")
-        return
+        return end_with(bad)
     out = console()
     widths = [max(len(text) for text in column) for column in zip(*map(_columns, instances), strict=True)]
     for instance in instances:
@@ -70,6 +53,7 @@ def cases(
         out.print(f"{name}  level {instance.case.level}  {category}  {instance.case.title}", soft_wrap=True)
         if wanted:
             out.print(f"\n{instance.prompt.strip()}\n", soft_wrap=True)
+    return end_with(bad)
 
 
 def _columns(instance: Instance) -> tuple[str, str]:
@@ -78,12 +62,12 @@ def _columns(instance: Instance) -> tuple[str, str]:
 
 def export(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to write to; it is made.")],
-    wanted: Annotated[
-        list[str] | None, typer.Argument(metavar="[CASE]...", help="Ids or categories; default: all.")
-    ] = None,
+    wanted: Wanted = None,
     fresh: Annotated[
         int | None, typer.Option(min=0, max=10**18 - 1, help="Seed of fresh instances: other numbers, names and words.")
     ] = None,
+    cases_folder: CasesFolder = None,
+    golds_folder: GoldsFolder = None,
 ) -> None:
     """Write a folder for each case: its prompt, and the files that it starts with.
 
@@ -91,13 +75,15 @@ def export(
     of the user are in ``prompt-2.md`` and so on: open each after the reply to the one before, and save that reply as
     ``reply-1.md``.
     """
-    instances = [case_of(name, fresh) for name in chosen(wanted)]
+    store = store_of(cases_folder, golds_folder)
+    instances, bad = read_cases(chosen(wanted, store), store, [fresh])
     taken = [i.case.id for i in instances if (folder / name_of(i.case.id, i.name)).exists()]
     if taken:
         raise ArgumentError(f"{folder} holds {', '.join(taken[:3])} already", "choose another folder")
     for instance in instances:
         write_case(folder / name_of(instance.case.id, instance.name), instance)
     sys.stdout.write(f"{len(instances)} {'case' if len(instances) == 1 else 'cases'} in {folder}\n")
+    end_with(bad)
 
 
 def write_case(folder: Path, instance: Instance) -> None:

@@ -13,8 +13,9 @@ from typing import Annotated, NamedTuple
 import typer
 
 from irsim.diagnostics.errors import ArgumentError
-from irsim_evals.cases.store import Instance, all_case_ids, case_of
+from irsim_evals.cases.store import Instance, Store, all_case_ids, case_of
 from irsim_evals.cli.cases import PROMPT_FILE
+from irsim_evals.cli.choice import CasesFolder, GoldsFolder, store_of
 from irsim_evals.cli.verdicts import show_verdicts
 from irsim_evals.grader.artefact import ArtefactError, from_folder
 from irsim_evals.grader.limited import grade_folder
@@ -57,13 +58,16 @@ def grade(
     ] = None,
     arm: Annotated[str | None, typer.Option(help="Who answered, in that file; default: the name of DIR.")] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    cases_folder: CasesFolder = None,
+    golds_folder: GoldsFolder = None,
 ) -> None:
     """Grade what was left in the folders of an export.
 
     Up to 200 files of a folder are read: texts up to 2 MB, pictures and arrays up to 16 MB.
     Exits with 0 if every case passes, with 1 if one does not, with 2 if there is nothing to grade.
     """
-    works = _works(folder, case)
+    store = store_of(cases_folder, golds_folder)
+    works = _works(folder, case, store)
     if output is not None and (output.is_dir() or not output.absolute().parent.is_dir()):
         why = "is a folder" if output.is_dir() else "lies in a folder that does not exist"
         raise ArgumentError(f"--output: {output} {why}", "give the path of a file")
@@ -74,26 +78,26 @@ def grade(
             f"--calls belongs to one case, and {folder} holds {len(works)}",
             "give the folder of one case, or put each file into its folder as calls.jsonl",
         )
-    grader = _Grader(None if calls is None else calls.resolve(), run_programs)
+    grader = _Grader(None if calls is None else calls.resolve(), run_programs, store)
     changes = Changes(work.folder for work in works)
     verdicts = {work.folder: grader.grade(work) for work in works}
     show_verdicts(list(verdicts.values()), json_output)
     if output is not None:
         place = folder.resolve()
-        _write(output, arm or (place.parent if works[0].folder == folder else place).name, works, verdicts)
+        _write(output, arm or (place.parent if works[0].folder == folder else place).name, works, verdicts, store)
     if watch:
         _watch(folder, case, grader, verdicts, changes, json_output)
     if not all(verdict.strict for verdict in verdicts.values()):
         raise typer.Exit(1)
 
 
-def _write(output: Path, arm: str, works: list[_Work], verdicts: Mapping[Path, Verdict]) -> None:
-    instances = [case_of(work.case, work.seed) for work in works]
+def _write(output: Path, arm: str, works: list[_Work], verdicts: Mapping[Path, Verdict], store: Store) -> None:
+    instances = [case_of(work.case, work.seed, store) for work in works]
     trials = [
         trial_of(instance, verdicts[work.folder], arm, reply=_reply(instance, work.folder))
         for instance, work in zip(instances, works, strict=True)
     ]
-    write_results(results_of(trials), output)
+    write_results(results_of(trials, store), output)
 
 
 def _reply(instance: Instance, folder: Path) -> str:
@@ -103,7 +107,7 @@ def _reply(instance: Instance, folder: Path) -> str:
         return ""
 
 
-def _works(folder: Path, case: str | None) -> list[_Work]:
+def _works(folder: Path, case: str | None, store: Store) -> list[_Work]:
     """The folders to grade.
 
     Raises:
@@ -111,7 +115,7 @@ def _works(folder: Path, case: str | None) -> list[_Work]:
     """
     if not folder.is_dir():
         raise ArgumentError(f"there is no folder {folder}", "write some with irsim-evals export DIR")
-    known = set(all_case_ids())
+    known = set(all_case_ids(store))
     if case is not None:
         work = _work(folder, case, known)
         if work is None:
@@ -140,9 +144,10 @@ class _Grader(NamedTuple):
 
     calls: Path | None
     run_programs: bool
+    store: Store
 
     def grade(self, work: _Work) -> Verdict:
-        instance = case_of(work.case, work.seed)
+        instance = case_of(work.case, work.seed, self.store)
         verdict = grade_folder(instance, work.folder, calls=self.calls, run_programs=self.run_programs)
         if _has_other_prompt(work.folder, instance):
             verdict.cost.notes.append(
@@ -187,7 +192,7 @@ def _watch(
     try:
         while not stopped.wait(_PERIOD_S):
             try:
-                works = {work.folder: work for work in _works(folder, case)}
+                works = {work.folder: work for work in _works(folder, case, grader.store)}
             except (ArgumentError, OSError):  # folders may come and go meanwhile
                 continue
             changed = changes.look(works)

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from irsim.cli.output import console, progress
-from irsim_evals.cli.cases import chosen
+from irsim_evals.cli.choice import CasesFolder, GoldsFolder, Wanted, chosen, end_with, read_cases, store_of
 from irsim_evals.proof.prove import Disagreement, Proof, as_case_rows, as_rows
 from irsim_evals.proof.prove import prove as run_proof
 from irsim_evals.proof.trials import Trial
@@ -24,12 +24,12 @@ MIN_REWRITES, MIN_MUTANTS = 10, 30
 
 
 def prove(
-    wanted: Annotated[
-        list[str] | None, typer.Argument(metavar="[CASE]...", help="Ids or categories; default: all.")
-    ] = None,
+    wanted: Wanted = None,
     quick: Annotated[bool, typer.Option(help="All golds, and a random tenth of the rest.")] = False,
     seed: Annotated[int, typer.Option(help="Seed of the choice and of the fresh instances.")] = 0,
     json_output: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    cases_folder: CasesFolder = None,
+    golds_folder: GoldsFolder = None,
 ) -> None:
     """Prove the grader: golds and their rewrites pass, mutants of pinned facts and null agents fail.
 
@@ -37,8 +37,10 @@ def prove(
     verdict within its processor time, or if the second implementation of the commonest predicates disagrees.
     """
     begin = time.perf_counter()
+    store = store_of(cases_folder, golds_folder)
+    instances, bad = read_cases(chosen(wanted, store, sets=True), store)
     with progress("grading") as show:
-        proof = run_proof(chosen(wanted), quick=quick, seed=seed, progress=show)
+        proof = run_proof([one.case.id for one in instances], store=store, quick=quick, seed=seed, progress=show)
     seconds = time.perf_counter() - begin
     if json_output:
         wrong = [
@@ -62,6 +64,7 @@ def prove(
         or any(wrong > _BAR * count for wrong, count in (proof.false_accepts, proof.false_rejects))
     ):
         raise typer.Exit(1)
+    end_with(bad)
 
 
 def _said_of(trial: Trial) -> str:

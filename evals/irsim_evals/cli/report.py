@@ -12,6 +12,7 @@ import typer
 
 from irsim.cli.output import console, progress
 from irsim.diagnostics.errors import ArgumentError
+from irsim_evals.cli.choice import CasesFolder, GoldsFolder, store_of
 
 if TYPE_CHECKING:
     from irsim_evals.report.comparison import Comparison
@@ -37,6 +38,8 @@ def report(
     pictures: Annotated[bool, typer.Option(help="Draw the worlds at the start and at the end.")] = True,
     title: Annotated[str, typer.Option(help="Title of the report.")] = "irsim evals",
     json_output: Annotated[bool, typer.Option("--json", help="Print the aggregates as JSON.")] = False,
+    cases_folder: CasesFolder = None,
+    golds_folder: GoldsFolder = None,
 ) -> None:
     """Write report.html, report.md and results.json about graded answers.
 
@@ -50,8 +53,9 @@ def report(
 
     results = merge([(path, load_results(path)) for path in files])
     proved = load_proof(proof) if proof is not None else None
+    store = store_of(cases_folder, golds_folder)
     with progress("drawing") as show:
-        content = content_of(results, title=title, proof=proved, pictures=pictures, progress=show)
+        content = content_of(results, title=title, proof=proved, pictures=pictures, progress=show, store=store)
     output.mkdir(parents=True, exist_ok=True)
     texts = {"report.html": page(content), "report.md": markdown(content), "results.json": as_benchmark(content)}
     for name, text in texts.items():

@@ -14,8 +14,8 @@ from irsim.cli.output import console, progress
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.baselines.arms import BASELINES, run_baseline
-from irsim_evals.cases.store import Instance, case_of
-from irsim_evals.cli.cases import chosen
+from irsim_evals.cases.store import Instance
+from irsim_evals.cli.choice import CasesFolder, GoldsFolder, Wanted, chosen, end_with, read_cases, store_of
 from irsim_evals.harness.arms import MODEL_ARMS
 from irsim_evals.results import Trial, results_of, write_results
 from irsim_evals.statistics import mean_pass_hat_k, wilson
@@ -27,9 +27,7 @@ _ALL_BASELINES = "baselines"
 
 
 def run(
-    wanted: Annotated[
-        list[str] | None, typer.Argument(metavar="[CASE]...", help="Ids or categories; default: all.")
-    ] = None,
+    wanted: Wanted = None,
     arm: Annotated[
         list[str] | None,
         typer.Option(
@@ -65,6 +63,8 @@ def run(
         Path | None, typer.Option(help="File that gets only which cases each arm passed, to compare runs by eye.")
     ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    cases_folder: CasesFolder = None,
+    golds_folder: GoldsFolder = None,
 ) -> None:
     """Let baselines or a model answer the cases, grade the answers and write results.json.
 
@@ -72,14 +72,16 @@ def run(
     arms have run, however many cases passed.
     """
     arms = _arms(arm)
+    store = store_of(cases_folder, golds_folder)
     options = {
         "model": model, "epochs": epochs, "token_limit": token_limit, "cost_limit": cost_limit,
         "time_limit": time_limit, "replay": replay, "replay_mode": "grade" if grade_only else "full", "price": price,
-        "base_url": base_url, "log_dir": output / "logs",
+        "base_url": base_url, "log_dir": output / "logs", "store": store,
     }  # fmt: skip
     if output.exists() and not output.is_dir():
         raise ArgumentError(f"{output} is a file", "give a folder with --output")
-    instances = _instances(chosen(wanted), fresh, trials)
+    seeds = [fresh, *range((fresh or 0) + 1, (fresh or 0) + trials)]  # further instances have the seeds that follow
+    instances, bad = read_cases(chosen(wanted, store), store, seeds)
     done: list[Trial] = []
     for name in arms:
         with progress(name) as report:
@@ -88,7 +90,7 @@ def run(
             else:
                 done += _run_model(name, instances, options, report)
     path = output / "results.json"
-    write_results(results_of(done), path)
+    write_results(results_of(done, store), path)
     if verdicts is not None:
         verdicts.parent.mkdir(parents=True, exist_ok=True)
         verdicts.write_text(verdicts_text(done), encoding="utf-8")
@@ -97,6 +99,7 @@ def run(
         sys.stdout.write(json.dumps({"arms": rows, "results": str(path)}, ensure_ascii=False) + "\n")
     else:
         _show(rows, path)
+    end_with(bad)
 
 
 def summaries(trials: Sequence[Trial]) -> list[dict[str, Any]]:
@@ -164,12 +167,6 @@ def _arms(given: list[str] | None) -> list[str]:
             raise ArgumentError(f"no arm is called {name!r}; there are {', '.join(known)}", hint)
         arms += BASELINES if name == _ALL_BASELINES else [name]
     return list(dict.fromkeys(arms))
-
-
-def _instances(names: list[str], fresh: int | None, trials: int) -> list[Instance]:
-    """The instances of the cases: the first as asked for, further ones with the seeds that follow."""
-    seeds = [fresh, *range((fresh or 0) + 1, (fresh or 0) + trials)]
-    return [case_of(name, seed) for name in names for seed in seeds]
 
 
 def _run_model(

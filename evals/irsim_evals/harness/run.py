@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from irsim.diagnostics.errors import ArgumentError, IrsimError
-from irsim_evals.cases.store import Instance
+from irsim_evals.cases.store import PUBLISHED, Instance, Store, cases_hash
 from irsim_evals.harness.arms import MODEL_ARMS
 from irsim_evals.harness.prices import Price, set_price
 from irsim_evals.harness.recording import (
@@ -27,7 +27,7 @@ from irsim_evals.harness.recording import (
     matched,
     write_recording,
 )  # fmt: skip
-from irsim_evals.results import Trial, cases_hash
+from irsim_evals.results import Trial
 
 __all__ = ["MESSAGE_LIMIT", "RunError", "run_arm"]
 
@@ -65,6 +65,7 @@ def run_arm(
     message_limit: int | None = MESSAGE_LIMIT,
     price: Price | None = None,
     replay_mode: Literal["full", "grade"] = "full",
+    store: Store = PUBLISHED,
 ) -> list[Trial]:
     """Let a model answer instances of cases, and grade what it leaves.
 
@@ -85,6 +86,7 @@ def run_arm(
         price: US dollars for a million tokens that are read and written, for a model whose price is not known.
         replay_mode: ``full`` calls the tools again and reports what they answer otherwise; ``grade`` only grades the
             recorded files, for which nothing needs to be installed.
+        store: The folder of the cases, whose digest the recording has.
 
     Returns:
         One trial for each attempt, in the order of the instances. An attempt that an error ended is a failed one that
@@ -113,7 +115,7 @@ def run_arm(
     limits = {
         "token_limit": token_limit, "cost_limit": cost_limit, "time_limit": seconds, "message_limit": message_limit,
     }  # fmt: skip
-    return _evaluate(arm, instances, model, epochs, limits, log_dir, recording, base_url, progress)
+    return _evaluate(arm, instances, model, epochs, limits, log_dir, recording, base_url, progress, store)
 
 
 def _check(arm: str, instances: Sequence[Instance], epochs: int) -> None:
@@ -153,6 +155,7 @@ def _evaluate(
     recording: Recording | None,
     base_url: str | None,
     progress: Callable[[int, int], None] | None,
+    store: Store,
 ) -> list[Trial]:
     from irsim_evals.harness.attempts import attempt_of, drift_of, replayed_model, trial_from, unfinished
     from irsim_evals.harness.task import Session, build_task, by_name
@@ -191,7 +194,8 @@ def _evaluate(
     if recording is None:
         header = Header(
             arm=arm, model=model, date=datetime.now(timezone.utc).isoformat(timespec="seconds"), sdk=_versions(),
-            skills=_skills(arm), cases=cases_hash(), sampling={name: value for name, value in limits.items() if value},
+            skills=_skills(arm), cases=cases_hash(store),
+            sampling={name: value for name, value in limits.items() if value},
         )  # fmt: skip
         write_recording(Recording(header=header, attempts=attempts), place.with_suffix(".jsonl"))
     if log.status == "cancelled":

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from irsim_evals.cases.store import case_ids
+from irsim_evals.cases.store import PUBLISHED, Store, case_ids
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.limited import SECONDS, LimitError, run_all
 from irsim_evals.grader.outcome import NOT_REACHED, Verdict
@@ -84,6 +84,7 @@ class Proof:
 def prove(
     ids: list[str] | None = None,
     *,
+    store: Store = PUBLISHED,
     quick: bool = False,
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
@@ -92,6 +93,7 @@ def prove(
 
     Args:
         ids: Cases; default: all.
+        store: Where they and their golds lie.
         quick: All golds, and a random tenth of the rest.
         seed: Seed of the choice, and of one fresh instance of each case.
         progress: Callback ``(done, total)``.
@@ -99,7 +101,8 @@ def prove(
     proof = Proof()
     choice = random.Random(seed)
     keep = (lambda: choice.random() < _QUICK_SHARE) if quick else (lambda: True)
-    trials = [trial for case_id in ids or case_ids() for trial in trials_of(case_id, proof.left_out, seed, keep)]
+    names = ids if ids is not None else case_ids(store, sets=True)
+    trials = [trial for name in names for trial in trials_of(name, proof.left_out, seed, keep, store)]
     rng = random.Random(f"second {seed}")
     jobs = [(trial, rng.random() < _SECOND_SHARE) for trial in trials]
     results = run_all(tried, jobs, None, 2 * SECONDS, "grading")  # a trial is also compared, and graded twice

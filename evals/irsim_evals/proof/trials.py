@@ -19,7 +19,7 @@ from irsim.diagnostics.errors import IrsimError
 from irsim.scenario.read import read
 from irsim.scenario.yaml.comments import places_of_comments
 from irsim.scenario.yaml.document import load_text
-from irsim_evals.cases.store import Instance, case_of, golds_of
+from irsim_evals.cases.store import PUBLISHED, Instance, Store, case_of, golds_of
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.material import LIMITS, write_files
 from irsim_evals.grader.scene import GradedScene, open_scene
@@ -107,7 +107,11 @@ def _build(text: str, blobs: Mapping[str, bytes], seed: int) -> GradedScene | No
 
 
 def trials_of(
-    case_id: str, left_out: Counter[str], seed: int = 0, keep: Callable[[], bool] = lambda: True
+    case_id: str,
+    left_out: Counter[str],
+    seed: int = 0,
+    keep: Callable[[], bool] = lambda: True,
+    store: Store = PUBLISHED,
 ) -> Iterator[Trial]:
     """The trials of one case: golds as published and of a fresh instance, then changes of the golds as published.
 
@@ -116,14 +120,15 @@ def trials_of(
         left_out: Counts mutants that are not tried.
         seed: Seed of the fresh instance.
         keep: Asked for each change whether it is tried.
+        store: Where the case and its golds lie.
     """
     for fresh in (None, seed + 1):
-        instance = case_of(case_id, fresh)
-        for gold in golds_of(instance):
+        instance = case_of(case_id, fresh, store)
+        for gold in golds_of(instance, store):
             what = "as published" if fresh is None else f"instance {fresh}"
             yield Trial(case_id, gold.name, "gold", "gold", what, instance, gold)
-    instance = case_of(case_id)
-    for gold in golds_of(instance):
+    instance = case_of(case_id, None, store)
+    for gold in golds_of(instance, store):
         yield from _changed(case_id, instance, gold, left_out, keep)
     yield from (trial for trial in _null(case_id, instance) if keep())
 

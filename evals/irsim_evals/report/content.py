@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from irsim_evals.cases.store import PUBLISHED, Store
 from irsim_evals.report.comparison import Comparison, compare
 from irsim_evals.report.failures import Category, category_of, counted
 from irsim_evals.report.load import Asked, Proof, asked_of
@@ -51,6 +52,7 @@ def content_of(
     proof: Proof | None = None,
     pictures: bool = True,
     progress: Callable[[int, int], None] | None = None,
+    store: Store = PUBLISHED,
 ) -> Content:
     """Compute what a report shows.
 
@@ -60,8 +62,9 @@ def content_of(
         proof: The proof of the grader.
         pictures: Draw the worlds.
         progress: Callback ``(done, total)`` for the pictures.
+        store: The cases that the trials are about.
     """
-    trials, names, asked = results.trials, arms_of(results.trials), asked_of(results)
+    trials, names, asked = results.trials, arms_of(results.trials), asked_of(results, store)
     by_arm = {name: [trial for trial in trials if trial.arm == name] for name in names}
     return Content(
         title=title,

@@ -13,8 +13,8 @@ from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.messages.translate import option_message, option_problems
-from irsim_evals.cases.store import all_case_ids, case_of, given_pictures
-from irsim_evals.results import Results, Trial, cases_hash, read_results
+from irsim_evals.cases.store import PUBLISHED, Store, all_case_ids, case_of, cases_hash, given_pictures
+from irsim_evals.results import Results, Trial, read_results
 from irsim_evals.statistics import Interval, wilson
 
 __all__ = ["Asked", "Proof", "ProofRow", "asked_of", "load_proof", "load_results", "merge"]
@@ -159,22 +159,22 @@ class Asked:
     pictures: Mapping[str, bytes] = field(default_factory=dict)
 
 
-def asked_of(results: Results) -> list[Asked]:
+def asked_of(results: Results, store: Store = PUBLISHED) -> list[Asked]:
     """The question of each trial's case; nothing is known if the trials were made with other cases than the present."""
-    if results.cases != cases_hash():
+    if results.cases != cases_hash(store):
         return [Asked() for _ in results.trials]
     by_key: dict[tuple[str, str], Asked] = {}
     for trial in results.trials:
         if trial.key not in by_key:
-            by_key[trial.key] = _asked(trial)
+            by_key[trial.key] = _asked(trial, store)
     return [by_key[trial.key] for trial in results.trials]
 
 
-def _asked(trial: Trial) -> Asked:
-    if trial.verdict.case not in all_case_ids():
+def _asked(trial: Trial, store: Store) -> Asked:
+    if trial.verdict.case not in all_case_ids(store):
         return Asked()
     try:
-        instance = case_of(trial.verdict.case, int(trial.verdict.instance) if trial.verdict.instance else None)
+        instance = case_of(trial.verdict.case, int(trial.verdict.instance) if trial.verdict.instance else None, store)
     except ValueError:  # an instance that is not a number
         return Asked()
     case = instance.case

@@ -133,7 +133,7 @@ class Explainer:
             key = str(raw)
             self.path = (*parent, key)
         model = model_at(self.root, parent, self.data)
-        allowed = list(model.model_fields) if model is not None else []
+        allowed = [field.alias or name for name, field in model.model_fields.items()] if model is not None else []
         meant = getattr(model, "also_called", {}).get(str(key).lower())
         near = meant or nearest(key, allowed)
         title = self.root.model_config.get("title") or self.root.__name__

@@ -29,12 +29,16 @@ def model_at(root: type[BaseModel], path: Path, data: Any) -> type[BaseModel] | 
     """The model that validates the mapping at ``path`` of a document; None if the path leads out of the language."""
     model: type[BaseModel] | None = root
     target: Select | type[BaseModel] | None = root
+    keyed = False  # whether the next part is a key of the user's own
     for part in path:
         if isinstance(part, str):
-            field = model.model_fields.get(part) if model is not None else None
+            if keyed:
+                keyed, data = False, at(data, (part,))
+                continue
+            field = _field(model, part) if model is not None else None
             if field is None:
                 return None
-            target = _target(field)
+            target, keyed = _target(field), get_origin(field.annotation) is dict
         data = at(data, (part,))
         if isinstance(target, Select):
             model = target.model_for(data) if isinstance(data, Mapping) else None
@@ -50,7 +54,13 @@ def field_at(root: type[BaseModel], path: Path, data: Any) -> FieldInfo | None:
     if not path:
         return None
     model = model_at(root, path[:-1], data)
-    return model.model_fields.get(str(path[-1])) if model is not None else None
+    return _field(model, str(path[-1])) if model is not None else None
+
+
+def _field(model: type[BaseModel], key: str) -> FieldInfo | None:
+    """The field of a model that has a key."""
+    field = model.model_fields.get(key)
+    return field or next((field for field in model.model_fields.values() if field.alias == key), None)
 
 
 def lengths_of(field: FieldInfo | None, least: int | None, most: int | None) -> tuple[int | None, int | None]:

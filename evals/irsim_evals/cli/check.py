@@ -1,0 +1,110 @@
+"""``irsim-evals check``: say everything that is wrong with case files, where, and what to write instead."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from irsim.cli.findings import print_diagnostics
+from irsim.cli.guard import INVALID
+from irsim.cli.output import console, print_json
+from irsim.common.text import clean, plural
+from irsim.diagnostics.diagnostic import Diagnostic
+from irsim.scenario.yaml.document import load_path, text_of
+from irsim.validation.validate import report
+from irsim_evals.cases.reading import CaseError
+from irsim_evals.cases.store import Instance, Store, case_files, golds_of, instance_of
+from irsim_evals.cli.choice import CasesFolder, GoldsFolder, chosen, store_of
+from irsim_evals.grader.limited import grade_answer
+
+__all__ = ["MIN_GOLDS", "check"]
+
+MIN_GOLDS = 2
+"""Number of golds that each case has at least."""
+_MAX_LISTED = 10
+"""Number of files up to which those that are right are listed."""
+_MAX_FAILED = 3
+"""Failed assertions of a gold that are listed."""
+
+
+def check(
+    wanted: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[FILE]...", help="Case files; or ids, categories or sets. Default: all cases."),
+    ] = None,
+    grade: Annotated[
+        bool, typer.Option("--grade", help="Also grade the golds: two at least, and each of them must pass.")
+    ] = False,
+    json_output: Annotated[
+        bool, typer.Option("--json", help="Print only one JSON object per file, one per line.")
+    ] = False,
+    cases_folder: CasesFolder = None,
+    golds_folder: GoldsFolder = None,
+) -> None:
+    """Check case files without grading anything; the exit code is 2 if any of them is wrong."""
+    store = store_of(cases_folder, golds_folder)
+    paths = list(_paths(wanted, store))
+    wrong = 0
+    for path in paths:
+        problems, said = _look(path, store if grade else None)
+        right = not any(item.severity == "error" for item in problems)
+        wrong += not right
+        if json_output:
+            print_json(report(str(path), problems, said if right else None), line=True)
+            continue
+        text = text_of(str(path)) if problems else None
+        print_diagnostics(problems, text if isinstance(text, str) else None)
+        if right and len(paths) <= _MAX_LISTED:
+            console().print(f"{path}: valid: {said}", soft_wrap=True)
+    if len(paths) > _MAX_LISTED and not json_output:
+        console().print(f"{len(paths) - wrong} of {len(paths)} case files are valid")
+    if wrong:
+        raise typer.Exit(INVALID)
+
+
+def _paths(wanted: Sequence[str] | None, store: Store) -> Iterator[Path]:
+    """The files that are meant, each as it can be named from the present folder."""
+    files = case_files(store)
+    for word in wanted or files:
+        if word not in files and (Path(word).suffix in (".yaml", ".yml") or Path(word).is_file()):
+            yield Path(word)
+        else:
+            yield from (_named(files[name]) for name in ([word] if word in files else chosen([word], store)))
+
+
+def _named(path: Path) -> Path:
+    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
+
+
+def _look(path: Path, store: Store | None) -> tuple[list[Diagnostic], str]:
+    """The problems of a file, and what a right one holds; those of its golds, too, if their store is given."""
+    try:
+        instance = instance_of(load_path(path))
+    except CaseError as error:
+        return error.diagnostics, ""
+    case: Any = instance.case
+    count = len(case.check) + sum(len(plan.check) for plan in case.episodes)
+    said = f"case {case.id}, {plural(count, 'assertion')}"
+    if store is None:
+        return [], said
+    return list(_problems_of_golds(instance, path, store)), f"{said}, {plural(len(golds_of(instance, store)), 'gold')}"
+
+
+def _problems_of_golds(instance: Instance, path: Path, store: Store) -> Iterator[Diagnostic]:
+    golds, place = golds_of(instance, store), store.golds / instance.case.id
+
+    def problem(message: str, fix: str) -> Diagnostic:
+        return Diagnostic("invalid-value", "error", (), message, fix=fix, file=str(path))
+
+    if len(golds) < MIN_GOLDS:
+        message = f"{place} holds {plural(len(golds), 'right answer')}, and each case needs {MIN_GOLDS} different ones"
+        yield problem(message, f"write {place}/NAME/scenario.yaml")
+    for gold in golds:
+        verdict = grade_answer(instance, gold)
+        if not verdict.strict:
+            failed = [f"{one.assertion}: {clean(one.observed, 200)}" for one in verdict.failed()[:_MAX_FAILED]]
+            message = f"{place / gold.name} does not pass: {'; '.join(failed)}"
+            yield problem(message, "change the answer or the assertion")
