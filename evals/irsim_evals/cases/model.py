@@ -170,6 +170,10 @@ class Case(Record):
     """Ways in which the agent may answer: build a scenario, ask first, or say that it cannot be done."""
     seeds: Seeds = [0]
     """Seeds of the worlds that assertions about the start look at."""
+    passable: Annotated[list[str], BeforeValidator(_as_list)] = []
+    """Selections of the bodies that others may pass through (``unobstructed``); all others must be solid."""
+    late: Annotated[list[str], BeforeValidator(_as_list)] = []
+    """Selections of bodies that never move and may come into the world after its start (``appear_time``)."""
     overlap: bool = False
     """Whether bodies may overlap at the start; ``overlap_free`` then says how often."""
     parameters: dict[str, Parameter] = {}

@@ -21,7 +21,7 @@ from irsim_evals.grader.material import Material, with_speeds
 from irsim_evals.grader.outcome import NOT_REACHED, STAGES, Outcome, Stage, Verdict
 from irsim_evals.grader.predicates._base import Observation
 from irsim_evals.grader.programs import problems_in
-from irsim_evals.grader.sanity import check_goals, check_moves, check_scene
+from irsim_evals.grader.sanity import check_goals, check_moves, check_scene, latest_start
 
 __all__ = ["failed_verdict", "grade"]
 
@@ -30,7 +30,7 @@ _FIRST_STEPS = 3
 _MAX_STEPS = 30_000
 """Steps of an episode."""
 _MOVING_TIME = 8.0
-"""Time [s] within which every body with a goal and a behavior must have moved."""
+"""Time [s] after the last start within which every body with a goal and a behavior must have moved."""
 
 
 class _Stop(Exception):
@@ -120,6 +120,8 @@ def _open(
     material = Material(
         scenario=None,
         selectors=case.select,
+        passable=case.passable,
+        late=case.late,
         texts=answer.files,
         given=case.files,
         reply=answer.reply,
@@ -190,7 +192,7 @@ def _has_several(case: Any) -> bool:
 def _sanity(instance: Instance, material: Material, outcomes: list[Outcome], moves: bool) -> None:
     case = instance.case
     for seed in case.seeds:
-        results = check_scene(material.scene(seed), overlap=not case.overlap)
+        results = check_scene(material, material.scene(seed), overlap=not case.overlap)
         outcomes += [item for item in results if not item.passed] if seed != case.seeds[0] else results
     if material.scenario is not None:
         outcomes.append(check_goals(material.scene(case.seeds[0])))
@@ -199,7 +201,8 @@ def _sanity(instance: Instance, material: Material, outcomes: list[Outcome], mov
 
 
 def _moves(instance: Instance, material: Material) -> Outcome:
-    return check_moves(run_episode(material.driven_by(None), instance.case.seeds[0], _MOVING_TIME))
+    seed = instance.case.seeds[0]
+    return check_moves(run_episode(material.driven_by(None), seed, _MOVING_TIME + latest_start(material.scene(seed))))
 
 
 def _assertions(instance: Instance, material: Material, built: bool, outcomes: list[Outcome]) -> None:
@@ -236,6 +239,7 @@ def _episodes(plan: Any, material: Material, outcomes: list[Outcome], whole: boo
             step_time = float(material.scene(seed).world.step_time)
             seconds = min(plan.seconds, _MAX_STEPS * step_time)
             scenario = with_speeds(material.driven_by(plan.behavior), material, seed, plan.speed)
+            scenario = material.made_solid(scenario, seed)
             episode = run_episode(scenario, seed, seconds, times)
         except IrsimError as error:
             why = str(error).splitlines()[0]

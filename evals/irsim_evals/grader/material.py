@@ -78,6 +78,8 @@ class Material:
     Attributes:
         scenario: The scenario that the simulator has read; None if there is no scenario to read.
         selectors: Selections of the case.
+        passable: Selections of bodies that others may pass through.
+        late: Selections of bodies that never move and may come into the world late.
         texts: Text of each file that the agent left, by its path in the folder.
         main: Path of the file that holds the scenario.
         given: Text of each file that the folder started with.
@@ -103,6 +105,8 @@ class Material:
     blobs: Mapping[str, bytes] = field(default_factory=dict)
     workplace: Path | None = None
     trusted_folder: Path | None = None
+    passable: Sequence[str] = ()
+    late: Sequence[str] = ()
     beside: dict[str, Material] = field(default_factory=dict, repr=False)
     _scenes: dict[int, GradedScene] = field(default_factory=dict, repr=False)
 
@@ -131,6 +135,15 @@ class Material:
         if behavior is None:
             return self.scenario
         return with_behavior(self.document, parse_behavior(behavior), strict=False)
+
+    def made_solid(self, scenario: ResolvedScenario, seed: int) -> ResolvedScenario:
+        """A scenario in which only those bodies are passable that may be."""
+        solid = {body.index for body in self.solid_bodies(self.scene(seed)) if body.passable}
+        objects = [
+            replace(record, unobstructed=False) if row in solid else record
+            for row, record in enumerate(scenario.objects)
+        ]
+        return replace(scenario, objects=objects) if solid else scenario
 
     def folder(self) -> Path:
         """A folder with a copy of every file of the answer."""
@@ -168,6 +181,11 @@ class Material:
     def bodies(self, scene: GradedScene, name: str) -> list[GradedBody]:
         """The bodies of a selection."""
         return select(scene, name, dict(self.selectors))
+
+    def solid_bodies(self, scene: GradedScene) -> list[GradedBody]:
+        """The bodies that others must not pass through, whether the scenario makes them passable or not."""
+        may = {body.index for name in self.passable for body in self.bodies(scene, name) if body.passable}
+        return [body for body in scene.bodies if body.index not in may]
 
 
 def write_files(folder: Path, texts: Mapping[str, str], blobs: Mapping[str, bytes]) -> None:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 import shapely
 from pydantic import model_validator
 
+from irsim.objects.describe import grid_values
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register
@@ -96,7 +98,7 @@ class Fill(ScenePredicate):
         seen = {
             "kind": None if options is None else getattr(options, "name", "image"),
             "cell": None if grid is None else max(grid.cell),
-            "share": None if grid is None else grid.occupied / (grid.size[0] * grid.size[1]),
+            "share": _occupied_share(scene),
             "seed": getattr(options, "seed", None),
         }
         wanted = {"kind": self.kind, "cell": self.cell, "share": self.share, "seed": self.seed}
@@ -105,6 +107,16 @@ class Fill(ScenePredicate):
         expected = ", ".join(f"{key} {match.words()}" for key, match in wanted.items() if match is not None)
         observed = ", ".join(f"{key} {show(seen[key])}" for key, match in wanted.items() if match is not None)
         return Observation(not off, expected, observed, "world.obstacle_map" if off else None)
+
+
+def _occupied_share(scene: GradedScene) -> float | None:
+    """Share of the cells of the map that are occupied; None without a map."""
+    grid = scene.env.scenario.grid
+    if grid is None:
+        return None
+    if grid.occupied >= 0:
+        return float(grid.occupied / (grid.size[0] * grid.size[1]))
+    return float(np.mean(np.asarray(grid_values(scene.env.simulation)) > 50))  # drawn anew for each scene
 
 
 @register("plan")
