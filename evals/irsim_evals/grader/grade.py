@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from irsim.diagnostics.errors import IrsimError
-from irsim_evals.cases.store import Instance
+from irsim_evals.cases.drawing import stand_ins
+from irsim_evals.cases.store import Instance, given_pictures
 from irsim_evals.grader.artefact import Answer, find_scenario, rivals, scenarios_in
 from irsim_evals.grader.episode import GradedEpisode, run_episode
 from irsim_evals.grader.material import Material, with_speeds
@@ -111,7 +112,8 @@ def _open(
     case = instance.case
     named_text = find_scenario(answer, case.files)
     if case.python != "any":
-        problems = problems_in(answer.files, case.files, case.python)
+        unread = dict.fromkeys([*answer.blobs, *answer.others])
+        problems = problems_in({**unread, **answer.files}, case.files, case.python)
         _add(
             outcomes, "only-yaml", "parse", not problems,
             "no program" if case.python == "none" else "programs that only run scenarios",
@@ -127,9 +129,18 @@ def _open(
         reply=answer.reply,
         replies=list(answer.replies),
         blobs=answer.blobs,
+        others=answer.others,
+        given_blobs=given_pictures(instance),
+        stand_ins=stand_ins(case.missing),
         workplace=workplace,
         trusted_folder=answer.trusted_folder,
     )
+    if case.missing:
+        made = [name for name in case.missing if name in material.names]
+        _add(
+            outcomes, "not-invented", "parse", not made, f"no file in place of the user's {', '.join(case.missing)}",
+            ", ".join(made) or "so it is",
+        )  # fmt: skip
     if not case.scenario:
         return material, False
     if named_text is None:
@@ -177,11 +188,13 @@ def _open(
 
 
 def _unread(answer: Answer) -> str:
-    """Names of files that are called like scenarios but do not look like one."""
+    """Files that are called like scenarios but do not look like one, or were not opened."""
     names = [
         name for name in answer.files if name.endswith((".yaml", ".yml")) and name not in scenarios_in(answer.files)
     ]
-    return f"; no world, robot or obstacle can be read in {', '.join(names[:3])}" if names else ""
+    words = f"; no world, robot or obstacle can be read in {', '.join(names[:3])}" if names else ""
+    closed = [f"{name} is {why}" for name, why in answer.others.items() if name.endswith((".yaml", ".yml"))]
+    return words + "".join(f"; {text}, and is not opened" for text in closed[:3])
 
 
 def _has_several(case: Any) -> bool:

@@ -87,7 +87,10 @@ class Material:
         replies: Its message after each turn.
         document: The scenario as written.
         findings: Findings of the checker about the scenario.
-        blobs: Content of each picture or array that the agent left.
+        blobs: Content of each picture, array or other file that the agent left and that is no text.
+        others: What else lies there and was not opened, in words.
+        given_blobs: Content of each picture that the folder started with.
+        stand_ins: Content of the maps that only the user has, as the grader imagines them.
         workplace: Temporary folder of this grading.
         trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
         beside: Path of another scenario of the answer → the same for assertions about that one.
@@ -103,6 +106,9 @@ class Material:
     document: Document | None = None
     findings: Sequence[Diagnostic] = ()
     blobs: Mapping[str, bytes] = field(default_factory=dict)
+    others: Mapping[str, str] = field(default_factory=dict)
+    given_blobs: Mapping[str, bytes] = field(default_factory=dict)
+    stand_ins: Mapping[str, bytes] = field(default_factory=dict)
     workplace: Path | None = None
     trusted_folder: Path | None = None
     passable: Sequence[str] = ()
@@ -145,16 +151,23 @@ class Material:
         ]
         return replace(scenario, objects=objects) if solid else scenario
 
+    @property
+    def names(self) -> list[str]:
+        """Paths of everything that the agent left and that was not given like this, its last message apart."""
+        texts = [name for name, text in self.texts.items() if self.given.get(name) != text]
+        blobs = [name for name, content in self.blobs.items() if self.given_blobs.get(name) != content]
+        return [*texts, *blobs, *self.others]
+
     def folder(self) -> Path:
         """A folder with a copy of every file of the answer."""
         if self.workplace is None:
             raise LookupError("there is no folder to work in")
-        write_files(self.workplace, self.texts, self.blobs)
+        write_files(self.workplace, self.texts, {**self.stand_ins, **self.blobs})
         return self.workplace
 
     def open(self, file: str) -> Opened:
         """Read a scenario of the answer. Maps beside it are read from a copy of the answer."""
-        return open_text(self.texts[file], self.folder() if self.blobs else None, file)
+        return open_text(self.texts[file], self.folder() if self.blobs or self.stand_ins else None, file)
 
     def other(self, file: str) -> Material:
         """The material for assertions about another scenario of the answer, opened once; itself for its own file.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -23,6 +24,8 @@ WORLD_KINDS: dict[str, Kind] = {
     "height": "length",
     "left": "length",
     "bottom": "length",
+    "right": "length",
+    "top": "length",
     "step_time": "time",
     "sample_time": "time",
     "time_limit": "time",
@@ -34,17 +37,22 @@ WORLD_KINDS: dict[str, Kind] = {
     "fog_map": "flag",
     "fog_map_resolution": "size",
     "map": "name",
+    "map_file": "name",
 }
 """Property of the world → what it measures."""
 WorldProperty = Annotated[str, OneOf("property of the world", tuple(WORLD_KINDS))]
-_KEYS = {"left": "offset", "bottom": "offset", "map": "obstacle_map"}
+_EDGES = ("left", "bottom", "right", "top")
+_KEYS = {"left": "offset", "bottom": "offset", "right": "width", "top": "height"} | dict.fromkeys(
+    ("map", "map_file"), "obstacle_map"
+)
 _MIN_AREA = 1e-4
 """Differences of a smaller area come from rounding [m²]."""
 
 
 @register("world")
 class World(ScenePredicate):
-    """The world has some properties: ``width``, ``height``, ``left``, ``bottom`` (its lower left corner), …"""
+    """The world has some properties: ``width``, ``top``, ``map`` (``image``, ``ros``, ``perlin``), … ``map_file``
+    is the path of its picture as written."""
 
     has: dict[WorldProperty, Match]
     """Property → accepted values."""
@@ -71,11 +79,11 @@ class World(ScenePredicate):
 
 def _value(scene: GradedScene, name: str) -> Any:
     world = scene.world
-    if name in ("left", "bottom"):
-        return scene.bounds[0 if name == "left" else 1]
-    if name == "map":
-        given = world.obstacle_map
-        return None if given is None else str(getattr(given, "name", given))
+    if name in _EDGES:
+        return scene.bounds[_EDGES.index(name)]
+    if name in ("map", "map_file"):
+        given = getattr(world.obstacle_map, "path" if name == "map_file" else "name", None)
+        return PurePosixPath(given).as_posix() if name == "map_file" and given is not None else given
     return getattr(world, name)
 
 
