@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import re
 from collections.abc import Mapping
@@ -12,6 +11,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from irsim.common.hashing import file_digest
 from irsim.common.records import ContentError, FileError, read_bytes, read_json
 from irsim_evals.grader.outcome import Cost, Step
 
@@ -140,7 +140,7 @@ def _start(path: Path) -> bytes:
 def _described(path: Path) -> str:
     """Size and digest of a file."""
     size = path.stat().st_size
-    digest = f", sha256 {hashlib.sha256(path.read_bytes()).hexdigest()[:16]}" if size <= _MAX_DIGEST_BYTES else ""
+    digest = f", sha256 {file_digest(path)[:16]}" if size <= _MAX_DIGEST_BYTES else ""
     return f"{size:,} bytes{digest}"
 
 
