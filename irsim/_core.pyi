@@ -569,6 +569,7 @@ class RandomPlacement:
     """Objects of one `random` distribution: states, then goals, are drawn for each scene (D7).
 
     Goals of wandering objects are drawn at every reset instead. The goals of static objects keep no distance.
+    Starts lie between `range_low` and `range_high`, goals between `goal_low` and `goal_high` (x, y [m], heading [rad]).
     Footprints keep clear of the discs `keep_points` (x, y, radius [m]), and by `keep_radii` [m] of `keep_objects` at
     their starts and goals, as far as these are known. A goal is at least `goal_distance` [m] from its start.
     """
@@ -579,6 +580,8 @@ class RandomPlacement:
         objects: Sequence[int],
         range_low: Sequence[float],
         range_high: Sequence[float],
+        goal_low: Sequence[float],
+        goal_high: Sequence[float],
         min_distance: float,
         goal_distance: float,
         keep_points: Sequence[Sequence[float]],

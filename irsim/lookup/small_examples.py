@@ -67,6 +67,8 @@ _VALUES: dict[str, Any] = {
     "obj_zorder": 4,
     "obstacle_map.perlin.resolution": 0.2,
     "obstacle_map.image.path": "cave.png",
+    "goal_high": [11, 11, 3.14159],
+    "goal_low": [8, 1, -3.14159],
     "obstacle_map.ros.path": "maps/floor.yaml",
     "offset": [0.2, 0, 3.14159],
     "plot.alpha": 0.1,

@@ -82,7 +82,9 @@ def fmcw(number: int = 60, **overrides: Any) -> core.FmcwLidar2dOptions:
 
 def random_placement(**overrides: Any) -> core.RandomPlacement:
     options: dict[str, Any] = {"goal_distance": 0.0, "keep_points": [], "keep_objects": [], "keep_radii": []}
-    return core.RandomPlacement(**{**options, **overrides})
+    given = {**options, **overrides}
+    bounds = {"goal_low": given["range_low"], "goal_high": given["range_high"]}
+    return core.RandomPlacement(**{**bounds, **given})
 
 
 def robot(**overrides: Any) -> core.ObjectSpec:

@@ -103,6 +103,35 @@ def test_goals_are_far_from_starts_and_clear_of_a_group(make: Make) -> None:
                     assert math.dist(view.goal[:2, 0], place[:2, 0]) >= 1.9 - 1e-9
 
 
+STREAM = """
+world: {width: 20, height: 8}
+robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, behavior: {name: dash},
+  distribution: {name: random, range_low: [1, 2, 0], range_high: [1, 6, 0], goal_low: [19, 4, 0],
+    goal_high: [19, 4, 0]}}
+obstacle: {number: 8, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, behavior: {name: dash},
+  distribution: {name: random, range_low: [1, 1, 0], range_high: [5, 7, 0], goal_low: [14, 1, 3], goal_high: [19, 7, 3],
+    goal_distance: 12}}
+"""
+
+
+def test_goals_lie_where_their_own_bounds_say(make: Make) -> None:
+    env, starts, goals = make(STREAM, seed=1), [], []
+    for _ in SEEDS:
+        env.reset(random=True)
+        assert env.robot.goal[:2, 0] == pytest.approx([19, 4])
+        starts.append(float(env.robot.state[1, 0]))
+        for view in env.obstacle_list:
+            assert 1 <= view.state[0, 0] <= 5
+            assert 14 <= view.goal[0, 0] <= 19
+            assert view.goal[2, 0] == 3
+            assert math.dist(view.state[:2, 0], view.goal[:2, 0]) >= 12
+            goals.append(float(view.goal[1, 0]))
+    assert min(starts) < 2.5
+    assert max(starts) > 5.5
+    assert min(goals) < 1.5
+    assert max(goals) > 6.5
+
+
 def test_batches_draw_what_single_worlds_draw(make: Make, tmp_path: Any) -> None:
     path = tmp_path / "crowd.yaml"
     path.write_text(CROWD)
@@ -235,3 +264,20 @@ obstacle: {number: 30, shape: {name: circle, radius: 0.2},
     places = np.array([view.state[:2, 0] for view in env.obstacle_list])
     assert np.linalg.norm(places - [1, 1], axis=1).min() >= 2.4 - 1e-9
     assert np.linalg.norm(places - [5, 5], axis=1).min() < 2.0, "robot_1 is of the group robot_0"
+
+
+def test_mistakes_in_the_bounds_of_goals_are_reported() -> None:
+    far = "range_low: [1, 1, 0], range_high: [2, 9, 0]"
+    assert problems(f"{{name: random, {far}, goal_low: [8, 1, 0], goal_high: [9, 9, 0], goal_distance: 6}}") == []
+    ((severity, code, fix),) = problems(f"{{name: random, {far}, goal_low: [8, 5, 0], goal_high: [9, 3, 0]}}")
+    assert (severity, code, "raise goal_high" in fix) == ("error", "range-order", True)
+    ((_, code, _),) = problems(f"{{name: random, {far}, goal_low: [8, 5, 0], goal_high: [8, 5.5, 0]}}")
+    assert code == "placement-impossible", "two goals a metre apart do not fit"
+    ((_, code, _),) = problems(f"{{name: random, {far}, goal_low: [3, 4, 0], goal_high: [4, 6, 0], goal_distance: 7}}")
+    assert code == "placement-impossible"
+    text = STREAM.replace("goal_high: [19, 7, 3]", "goal_high: [29, 7, 3]")
+    (finding,) = [f for f in irsim.validate(text=text).findings if f.code == "outside-world"]
+    assert "random goals have x from 14 to 29" in finding.message
+    text = STREAM.replace("behavior: {name: dash},\n", "behavior: {name: dash}, goal: [9, 9],\n", 1)
+    (finding,) = [f for f in irsim.validate(text=text).findings if f.code == "ignored-key"]
+    assert "goal_low and goal_high" in str(finding.fix)

@@ -88,31 +88,28 @@ class Printed:
     episodes: Sequence[Started] = ()
 
 
-def is_program(name: str, text: str | None = None) -> bool:
-    """Whether a file is a program, by its name or its first line."""
-    return name.lower().endswith(_PROGRAMS) or (text or "").startswith("#!")
+def is_program(name: str) -> bool:
+    """Whether a file is a program, by its name."""
+    return name.lower().endswith(_PROGRAMS)
 
 
-def problems_in(texts: Mapping[str, str | None], given: Mapping[str, str], allowed: str) -> list[str]:
+def problems_in(texts: Mapping[str, str], given: Mapping[str, str], allowed: str) -> list[str]:
     """Problems of the programs of an answer.
 
     Args:
-        texts: Files of the answer; None for what is no text.
+        texts: Files of the answer.
         given: Files that it started with.
         allowed: ``none`` or ``runner``.
     """
-    names = [
-        name for name, text in texts.items() if is_program(name, text) and (text is None or given.get(name) != text)
-    ]
+    names = [name for name in texts if is_program(name) and given.get(name) != texts[name]]
     if allowed == "none":
         return [f"{name} is a program" for name in names]
     problems = []
     for name in names:
-        text = texts[name]
-        if text is None or not name.endswith(".py"):
+        if not name.endswith(".py"):
             problems.append(f"{name} is not a Python program")
         else:
-            problems += [f"{name}, {problem}" for problem in problems_of(text)]
+            problems += [f"{name}, {problem}" for problem in problems_of(texts[name])]
     return problems
 
 

@@ -54,14 +54,15 @@ class RandomDistribution(DistributionOptions):
     Entries are placed in file order. Footprints at starts overlap neither objects with a fixed place nor starts drawn
     before; footprints at goals overlap neither static objects nor other goals, but may lie on starts. Static objects
     do not overlap goals that `circle_crossing` and `square_crossing` of entries before have drawn.
-    `state` and `goal` of the entry are ignored: for random starts with a fixed goal, write `state` and `goal` and vary
-    the start with `perturb` (position=1 is up to 1 m) of `irsim run` and `irsim benchmark`.
+    `state` and `goal` of the entry are ignored: `goal_low` and `goal_high` say where goals are, equal ones a single
+    place.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [
             {"name": "random", "range_low": [1, 1, -3.14159], "range_high": [9, 9, 3.14159]},
             {"name": "random", "keep_clear": [{"object": "robot_0", "radius": 1.0}], "goal_distance": 4.0},
+            {"name": "random", "range_high": [3, 9, 0], "goal_low": [7, 1, 0], "goal_high": [9, 9, 0]},
         ]
     }
     also_called: ClassVar[dict[str, str]] = {
@@ -74,13 +75,20 @@ class RandomDistribution(DistributionOptions):
 
     name: Literal["random"] = "random"
     range_low: Offset | None = None
-    """Lower bounds [x, y, theta] of the position of each object and of its goal, each drawn on its own: the middle of
-    the object; of a car with `wheelbase`, its rear axle. They do not bound footprints, which reach beyond: a disc by
-    its radius, a rectangle by half its diagonal, a car by about (length + wheelbase) / 2 ahead of it. Leave that much
-    room to the edge of the world. Null is half a metre inside the world, heading -π."""
+    """Lower bounds [x, y, theta] of the position of each object and, unless `goal_low` says otherwise, of its goal,
+    each drawn on its own: the middle of the object; of a car with `wheelbase`, its rear axle. They do not bound
+    footprints, which reach beyond: a disc by its radius, a rectangle by half its diagonal, a car by about (length +
+    wheelbase) / 2 ahead of it. Leave that much room to the edge of the world. Null is half a metre inside the world,
+    heading -π."""
     range_high: Offset | None = None
     """Upper bounds [x, y, theta] of the same positions, not of footprints, as `range_low`; null is half a metre inside
     the world, heading π."""
+    goal_low: Offset | None = None
+    """Lower bounds [x, y, theta] of goals, where they lie elsewhere than starts: at the other end of a corridor, say.
+    Null is `range_low`."""
+    goal_high: Offset | None = None
+    """Upper bounds [x, y, theta] of goals; null is `range_high`. Bounds that equal `goal_low` fix the goal of a single
+    object."""
     min_distance: Annotated[Meters, Field(ge=0)] = 1.0
     """Smallest distance between the positions of this entry's objects, and between their goals."""
     keep_clear: list[KeepClear] = []
@@ -97,6 +105,8 @@ class RandomDistribution(DistributionOptions):
         kernel = {
             "range_low": low,
             "range_high": high,
+            "goal_low": self.goal_low or low,
+            "goal_high": self.goal_high or high,
             "min_distance": self.min_distance,
             "goal_distance": self.goal_distance,
             "keep_points": [[*item.point, item.radius] for item in self.keep_clear if item.point is not None],

@@ -101,8 +101,12 @@ class KeptClear {
 class FarGoals {
  public:
   explicit FarGoals(const RandomPlacement& entry) : entry_(entry) {
-    if (entry.goal_distance > 0.0)
-      enough_ = std::clamp(places({entry.range_low[0], entry.range_low[1]}) / 4, 1, kEnough);
+    if (!(entry.goal_distance > 0.0)) return;
+    int most = 0;  // from a corner of the starts
+    for (const double x : {entry.range_low[0], entry.range_high[0]}) {
+      for (const double y : {entry.range_low[1], entry.range_high[1]}) most = std::max(most, places({x, y}));
+    }
+    enough_ = std::clamp(most / 4, 1, kEnough);
   }
   bool exist(Vec2 start) const { return !(entry_.goal_distance > 0.0) || places(start) >= enough_; }
   bool fits(Vec2 start, Vec2 goal) const {
@@ -110,9 +114,9 @@ class FarGoals {
   }
 
  private:
-  /// Number of places of a grid over the range, up to its corners, that are far enough.
+  /// Number of places of a grid over the range of goals, up to its corners, that are far enough.
   int places(Vec2 start) const {
-    const auto &low = entry_.range_low, &high = entry_.range_high;
+    const auto &low = entry_.goal_low, &high = entry_.goal_high;
     int count = 0;
     for (int i = 0; i <= kGrid; ++i) {
       for (int j = 0; j <= kGrid; ++j) {
@@ -129,14 +133,19 @@ class FarGoals {
   int enough_ = 0;
 };
 
+/// A pose between two bounds.
+Pose draw_between(const std::array<double, 3>& low, const std::array<double, 3>& high, const Draws& draws,
+                  std::uint64_t number) {
+  const auto u = draws.uniforms(number);
+  return {low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1], low[2] + (high[2] - low[2]) * u[2]};
+}
+
 /// Draw poses until `fits()` holds for one. Returns false if none does; `pose` is then the last draw.
 template <class Fits>
-bool draw_pose(const RandomPlacement& entry, int attempts, const Draws& draws, std::uint64_t first,
-               const Spread& spread, Pose& pose, Fits&& fits) {
-  const auto &low = entry.range_low, &high = entry.range_high;
+bool draw_pose(const std::array<double, 3>& low, const std::array<double, 3>& high, int attempts, const Draws& draws,
+               std::uint64_t first, const Spread& spread, Pose& pose, Fits&& fits) {
   for (int attempt = 0; attempt < attempts; ++attempt) {
-    const auto u = draws.uniforms(first + static_cast<std::uint64_t>(attempt));
-    pose = {low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1], low[2] + (high[2] - low[2]) * u[2]};
+    pose = draw_between(low, high, draws, first + static_cast<std::uint64_t>(attempt));
     if (spread.fits(pose.position()) && fits()) return true;
   }
   return false;
@@ -197,7 +206,7 @@ void place_randomly(const World& world, State& state, int w) {
         return kept.allow(i, pose, anywhere) && (!travels(world, i) || far.exist(pose.position())) &&
                placed.starts.fits(i, pose) && (!placed.goals || !world.is_static[i] || placed.goals->fits(i, pose));
       };
-      if (!draw_pose(entry, attempts(entry), draws(i), 0, spread, pose, fits)) failed(i);
+      if (!draw_pose(entry.range_low, entry.range_high, attempts(entry), draws(i), 0, spread, pose, fits)) failed(i);
       spread.add(pose.position());
       add_start(i);
     }
@@ -255,17 +264,16 @@ void place_randomly(const World& world, State& state, int w) {
       if (world.wander[i] || !takes_part(i)) continue;  // their goals are drawn at every reset
       Goal goal;
       if (!travels(world, i)) {  // these objects never reach a goal, but IR-SIM gives them one
-        const auto u = draws(i).uniforms(kGoalDraws);
-        const auto &low = entry->range_low, &high = entry->range_high;
-        state.goals[first + i].initial = {{low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1],
-                                           low[2] + (high[2] - low[2]) * u[2]}};
+        state.goals[first + i].initial = {draw_between(entry->goal_low, entry->goal_high, draws(i), kGoalDraws)};
         continue;
       }
       const Vec2 start = state.initial_pose[first + i].position();
       const auto fits = [&] {
         return far.fits(start, goal.position()) && kept.allow(i, goal, anywhere) && goals.fits(i, goal);
       };
-      if (!draw_pose(*entry, attempts(*entry), draws(i), kGoalDraws, spread, goal, fits)) failed(i);
+      const bool found =
+          draw_pose(entry->goal_low, entry->goal_high, attempts(*entry), draws(i), kGoalDraws, spread, goal, fits);
+      if (!found) failed(i);
       spread.add(goal.position());
       goals.add(i, goal);
       state.goals[first + i].initial = {goal};

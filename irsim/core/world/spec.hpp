@@ -68,7 +68,8 @@ struct ObjectSpec {
 /// Objects whose poses and goals are drawn for each scene.
 struct RandomPlacement {
   std::vector<int> objects;
-  std::array<double, 3> range_low, range_high;
+  std::array<double, 3> range_low, range_high;   // of starts
+  std::array<double, 3> goal_low, goal_high;     // of goals
   double min_distance;                           // between objects, and between goals, of this placement [m]
   double goal_distance;                          // smallest distance from a start to its goal [m]
   std::vector<std::vector<double>> keep_points;  // x, y and radius of the points that footprints keep clear of [m]
@@ -77,11 +78,11 @@ struct RandomPlacement {
   int attempts;                                  // maximum number of draws for an object
   static constexpr auto fields() {
     using P = RandomPlacement;
-    return std::make_tuple(field("objects", &P::objects), field("range_low", &P::range_low),
-                           field("range_high", &P::range_high), field("min_distance", &P::min_distance),
-                           field("goal_distance", &P::goal_distance), field("keep_points", &P::keep_points),
-                           field("keep_objects", &P::keep_objects), field("keep_radii", &P::keep_radii),
-                           field("attempts", &P::attempts));
+    return std::make_tuple(
+        field("objects", &P::objects), field("range_low", &P::range_low), field("range_high", &P::range_high),
+        field("goal_low", &P::goal_low), field("goal_high", &P::goal_high), field("min_distance", &P::min_distance),
+        field("goal_distance", &P::goal_distance), field("keep_points", &P::keep_points),
+        field("keep_objects", &P::keep_objects), field("keep_radii", &P::keep_radii), field("attempts", &P::attempts));
   }
 };
 

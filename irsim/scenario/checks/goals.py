@@ -124,10 +124,13 @@ def _threshold_too_large(context: Context, path: Path, entry: Entry, records: li
     for record in records:
         if record.static or record.kinematics is None or record.arrive_mode == "state":
             continue
-        ranges: Any = record if record.wander else placement
-        if ranges is None:
+        if record.wander:
+            low, high = record.range_low, record.range_high
+        elif placement is not None:
+            _, low, high = placement.ranges[-1]
+        else:
             continue
-        width, height = (ranges.range_high[i] - ranges.range_low[i] for i in range(2))
+        width, height = high[0] - low[0], high[1] - low[1]
         diagonal = math.hypot(width, height)
         if diagonal == 0 or record.goal_threshold < _MAX_THRESHOLD_RATIO * diagonal:
             continue
@@ -186,12 +189,18 @@ def _ignored_keys(path: Path, entry: Entry) -> Iterator[Finding]:
     name = entry.distribution.name
     keys = ["state"] if name == "circle" else ["state", "goal", "waypoints"]
     for key in keys:
+        goes = key != "state"
         if getattr(entry, key) is not None:
             yield warning(
                 "ignored-key",
                 (*path, key),
                 f"the distribution '{name}' places the objects: '{key}' has no effect",
-                fix=f"remove '{key}', or use the distribution 'manual'",
+                fix=f"remove '{key}', or use the distribution 'manual'"
+                + (
+                    "; goal_low and goal_high of the distribution say where goals are"
+                    if goes and name == "random"
+                    else ""
+                ),
                 edit=Edit("remove", (*path, key)),
             )
 

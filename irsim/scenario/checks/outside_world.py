@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, hint
 from irsim.scenario.model.scenario import Entry
-from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.scenario.resolve.resolved import ObjectRecord, Placement
 from irsim.scenario.yaml.formatting import flow
 
 _MAX_BEYOND = 0.05
@@ -31,19 +32,7 @@ def _placed_outside(context: Context, path: Path, entry: Entry, records: list[Ob
     world, options = f"the world [{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]", entry.distribution
     placement = next((p for p in context.resolved.placements if p.path == path), None)
     if placement is not None:
-        (left, low), (right, high) = placement.range_low[:2], placement.range_high[:2]
-        if left < x0 or low < y0 or right > x1 or high > y1:
-            key = "range_high" if right > x1 or high > y1 else "range_low"
-            written = getattr(options, key, None) is not None
-            keys = {"circle_crossing": "'center' and 'radius'", "square_crossing": "'center' and 'width'"}
-            removed = keys.get(placement.distribution, "'range_low' and 'range_high'")
-            yield hint(
-                "outside-world",
-                (*path, "distribution", key) if written else (*path, "distribution"),
-                f"random places have x from {left:g} to {right:g} and y from {low:g} to {high:g}, partly outside "
-                + world,
-                fix=f"remove {removed}: the defaults end half a metre inside the world",
-            )
+        yield from _drawn_outside(context, path, options, placement)
         return
     lost = [r for r in records if not (x0 <= r.state[0] <= x1 and y0 <= r.state[1] <= y1)]
     if not lost:
@@ -107,3 +96,23 @@ def _over_the_edge(context: Context, record: ObjectRecord) -> Finding | None:
                 fix=f"use x from {x0 + r:g} to {x1 - r:g} and y from {y0 + r:g} to {y1 - r:g}, or a larger world",
             )
     return None
+
+
+def _drawn_outside(context: Context, path: Path, options: Any, placement: Placement) -> Iterator[Finding]:
+    """Bounds of random starts and goals that reach beyond the world."""
+    x0, y0, x1, y1 = context.scenario.world.bounds
+    world = f"the world [{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]"
+    for what, lows, highs in placement.ranges:
+        (left, low), (right, high) = lows[:2], highs[:2]
+        if left < x0 or low < y0 or right > x1 or high > y1:
+            key = f"{what}_high" if right > x1 or high > y1 else f"{what}_low"
+            written = getattr(options, key, None) is not None
+            keys = {"circle_crossing": "'center' and 'radius'", "square_crossing": "'center' and 'width'"}
+            removed = keys.get(placement.distribution, f"'{what}_low' and '{what}_high'")
+            yield hint(
+                "outside-world",
+                (*path, "distribution", key) if written else (*path, "distribution"),
+                f"random {'goals' if what == 'goal' else 'places'} have x from {left:g} to {right:g} and y from "
+                f"{low:g} to {high:g}, partly outside {world}",
+                fix=f"remove {removed}: the defaults end half a metre inside the world",
+            )

@@ -45,20 +45,21 @@ def _empty_ranges(context: Context, path: Path) -> Iterator[Finding]:
     placement = next((p for p in context.resolved.placements if p.path == path), None)
     if placement is None:
         return
-    for i, axis in enumerate(("x", "y", "theta")):
-        low, high = placement.range_low[i], placement.range_high[i]
-        if low > high:
-            options: Any = context.entry(path).distribution
-            key = "range_low" if options.range_low is not None else "range_high"
-            given = getattr(options, key) is not None
-            yield error(
-                "range-order",
-                (*path, "distribution", key) if given else (*path, "distribution"),
-                f"{axis}: the lower bound must not exceed the upper bound, got {low:g} and {high:g}",
-                given=getattr(options, key),
-                fix="lower range_low or raise range_high; the defaults end half a metre inside the world",
-            )
-            return
+    options: Any = context.entry(path).distribution
+    for what, lows, highs in placement.ranges:
+        for i, axis in enumerate(("x", "y", "theta")):
+            low, high = lows[i], highs[i]
+            if low > high:
+                key = f"{what}_low" if getattr(options, f"{what}_low") is not None else f"{what}_high"
+                given = getattr(options, key) is not None
+                yield error(
+                    "range-order",
+                    (*path, "distribution", key) if given else (*path, "distribution"),
+                    f"{axis}: the lower bound must not exceed the upper bound, got {low:g} and {high:g}",
+                    given=getattr(options, key),
+                    fix=f"lower {what}_low or raise {what}_high; the defaults end half a metre inside the world",
+                )
+                return
 
 
 def _keep_clear(context: Context, path: Path, options: Any) -> Iterator[Finding]:
@@ -192,20 +193,25 @@ def _room(context: Context) -> Iterator[Finding]:
         if placement.distribution == "random":
             yield from _check_goal_distance(placement)
         if len(records) > 1 and placement.distribution == "random":
-            yield from _check_density(placement, records)
+            for what, low, high in placement.ranges:
+                yield from _check_density(placement, records, what, low, high)
         elif records and placement.distribution != "random":
             yield from _check_crossing(placement, records)
 
 
-def _check_density(placement: Placement, records: list[ObjectRecord]) -> Iterator[Finding]:
-    width, height = (placement.range_high[i] - placement.range_low[i] for i in range(2))
+def _check_density(
+    placement: Placement, records: list[ObjectRecord], what: str, low: list[float], high: list[float]
+) -> Iterator[Finding]:
+    width, height = high[0] - low[0], high[1] - low[1]
     distance = max(placement.min_distance, min(_thickness(record.shape) for record in records))
     if width < 0 or height < 0 or distance <= 0:
         return
     count, most = len(records), max_points(width, height, distance)
     density = count * math.pi / 4 / ((width / distance + 1) * (height / distance + 1))
-    why = f"{count} objects must keep {distance:g} m between their centres"
-    area = f"centres may lie in {width:g} m × {height:g} m (range_low to range_high)"
+    why = f"{count} objects must keep {distance:g} m between their {'goals' if what == 'goal' else 'centres'}"
+    area = (
+        f"{'they' if what == 'goal' else 'centres'} may lie in {width:g} m × {height:g} m ({what}_low to {what}_high)"
+    )
     fix = (
         f"use fewer or smaller objects, a smaller 'min_distance' (now {placement.min_distance:g} m), or a larger range"
     )
@@ -223,16 +229,22 @@ def _check_density(placement: Placement, records: list[ObjectRecord]) -> Iterato
 
 
 def _check_goal_distance(placement: Placement) -> Iterator[Finding]:
-    wanted = float(placement.options["goal_distance"])
-    width, height = (placement.range_high[i] - placement.range_low[i] for i in range(2))
-    longest = math.hypot(width, height)
-    if wanted <= _MAX_DISTANCE_SHARE * longest or width < 0 or height < 0:
+    wanted, ranges = float(placement.options["goal_distance"]), placement.ranges
+    (_, low, high), (_, goal_low, goal_high) = ranges[0], ranges[-1]
+    longest = math.hypot(*(max(goal_high[i] - low[i], high[i] - goal_low[i]) for i in range(_PLANE)))
+    empty = any(lows[i] > highs[i] for _, lows, highs in ranges for i in range(_PLANE))
+    if wanted <= _MAX_DISTANCE_SHARE * longest or empty:
         return
-    impossible = wanted > longest
+    impossible, apart = wanted > longest, len(ranges) > 1
+    where = (
+        f"they lie at most {metres(longest)} apart"
+        if apart
+        else f"the range is {metres(longest)} from corner to corner"
+    )
     yield (error if impossible else warning)(
         "placement-impossible" if impossible else "placement-tight",
         (*placement.path, "distribution", "goal_distance"),
-        f"goals must be {wanted:g} m from their starts, and the range is {metres(longest)} from corner to corner"
+        f"goals must be {wanted:g} m from their starts, and {where}"
         + ("" if impossible else ": starts and goals all lie near opposite corners"),
         given=wanted,
         fix=f"goal_distance: {0.7 * longest:.2g} or less, or a larger range (range_low to range_high)",

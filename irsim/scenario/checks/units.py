@@ -236,7 +236,7 @@ def _speeds(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 def _ranges(path: Path, options: Any) -> Iterator[Finding]:
     """Check the headings of the bounds of random poses."""
-    for key in ("range_low", "range_high"):
+    for key in ("range_low", "range_high", "goal_low", "goal_high"):
         yield from _heading((*path, key), list(getattr(options, key, None) or []))
 
 

@@ -177,6 +177,13 @@ class Placement:
         return [key for key, is_used in used.items() if is_used]
 
     @property
+    def ranges(self) -> list[tuple[str, list[float], list[float]]]:
+        """First word of the keys, lower and upper bounds: of starts, and of goals where they lie elsewhere."""
+        starts = ("range", self.range_low, self.range_high)
+        goals = ("goal", self.options.get("goal_low", self.range_low), self.options.get("goal_high", self.range_high))
+        return [starts] if goals[1:] == starts[1:] else [starts, goals]
+
+    @property
     def room(self) -> str:
         """The area in which places are drawn, in words."""
         width, height = (self.range_high[i] - self.range_low[i] for i in range(2))
