@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated, Literal
 
 from PIL import Image, ImageDraw, ImageFont
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-__all__ = ["Drawing", "Item", "Record", "draw"]
+__all__ = ["PICTURES", "Drawing", "Item", "Record", "draw", "stand_ins"]
+
+PICTURES = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".bmp": "BMP", ".pgm": "PPM"}
+"""Ending of a picture → its format."""
 
 _MARGIN = 40
 """Width of the white margin round the plan, which holds the labels of the axes [px]."""
@@ -93,6 +98,15 @@ def draw(drawing: Drawing) -> bytes:
             if item.kind == "arrow":
                 end = spot(x1, y1)
                 pen.ellipse([end[0] - 5, end[1] - 5, end[0] + 5, end[1] + 5], fill=item.color)
+    return _saved(image, "PNG")
+
+
+def stand_ins(names: Sequence[str]) -> dict[str, bytes]:
+    """Pictures of nothing in place of maps that are not there: name → content of the file."""
+    return {name: _saved(Image.new("L", (100, 100), 255), PICTURES[Path(name).suffix.lower()]) for name in names}
+
+
+def _saved(image: Image.Image, kind: str) -> bytes:
     file = io.BytesIO()
-    image.save(file, format="PNG")
+    image.save(file, format=kind)
     return file.getvalue()

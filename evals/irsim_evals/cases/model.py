@@ -8,12 +8,13 @@ from __future__ import annotations
 import json
 import keyword
 from inspect import cleandoc
+from pathlib import PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, create_model, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, create_model, model_validator
 
 from irsim.common.json_output import schema_of_file
-from irsim_evals.cases.drawing import Drawing, Record
+from irsim_evals.cases.drawing import PICTURES, Drawing, Record
 from irsim_evals.grader.matching import Quantity, Seeds
 from irsim_evals.grader.predicates._base import Predicate, registered
 from irsim_evals.grader.selection import Selector
@@ -132,6 +133,16 @@ class Waiver(Record):
     """Reason."""
 
 
+def _missing(name: str) -> str:
+    path = PurePosixPath(name)
+    if path.is_absolute() or ".." in path.parts or path.suffix.lower() not in PICTURES:
+        raise ValueError(f"missing: {name!r} is no path of a picture in the folder ({', '.join(PICTURES)})")
+    return name
+
+
+Missing = Annotated[str, AfterValidator(_missing)]
+
+
 class Case(Record):
     """One case."""
 
@@ -161,6 +172,9 @@ class Case(Record):
     """Files that the folder starts with: name → text."""
     drawings: dict[str, Drawing] = {}
     """Pictures that the folder starts with: name → what is drawn."""
+    missing: list[Missing] = []
+    """Maps that the user names and only the user has, by their path in the folder: the answer keeps the path and
+    invents no map, and is graded with an empty one."""
     scenario: bool = True
     """Whether the answer is a scenario; without it only files and the reply are looked at."""
     python: Literal["none", "runner", "any"] = "none"
@@ -170,6 +184,10 @@ class Case(Record):
     """Ways in which the agent may answer: build a scenario, ask first, or say that it cannot be done."""
     seeds: Seeds = [0]
     """Seeds of the worlds that assertions about the start look at."""
+    passable: Annotated[list[str], BeforeValidator(_as_list)] = []
+    """Selections of the bodies that others may pass through (``unobstructed``); all others must be solid."""
+    late: Annotated[list[str], BeforeValidator(_as_list)] = []
+    """Selections of bodies that never move and may come into the world after its start (``appear_time``)."""
     overlap: bool = False
     """Whether bodies may overlap at the start; ``overlap_free`` then says how often."""
     parameters: dict[str, Parameter] = {}

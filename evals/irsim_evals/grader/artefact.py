@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,6 +11,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from irsim.common.hashing import file_digest
 from irsim.common.records import ContentError, FileError, read_bytes, read_json
 from irsim_evals.grader.outcome import Cost, Step
 
@@ -23,16 +25,18 @@ BINARY = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".npy", ".npz")
 _MAX_FILE_BYTES = 2_000_000
 """Size of a text file that is read."""
 _MAX_FILES = 200
-"""Number of files that are looked at."""
+"""Number of files that are opened; further ones are named."""
+_MAX_THINGS = 5000
+"""Number of files, folders and links that are named."""
 _MAX_BLOB_BYTES = 16_000_000
-"""Size of a picture or an array that is read."""
-_TEXT = (
-    ".yaml", ".yml", ".md", ".json", ".jsonl", ".txt", ".toml", ".csv", ".py", ".ipynb", ".sh", ".js", ".pl", ".rb",
-    ".bat", ".ps1", ".patch",
-)  # fmt: skip
+"""Size of a file that is no text and is read."""
+_MAX_BLOBS_BYTES = 64_000_000
+"""Size of all of them together."""
+_MAX_DIGEST_BYTES = 64_000_000
+"""Size of a file whose digest is told."""
 _SCENARIO = (".yaml", ".yml", ".json")
-_PLAIN = ("Makefile", "makefile", "justfile")
-"""Names of further files that are read."""
+_CLOSED = (".git", "__pycache__")
+"""Folders of programs: what lies in them is named and not opened."""
 _REPLY = re.compile(r"reply(?:-(\d{1,3}))?\.md")
 _FENCE = re.compile(r"(?:```|~~~)(?:ya?ml)?[^\n`]*\n(.*?)(?:```|~~~)", re.DOTALL)
 _SECTIONS = re.compile(r"^[ \t]*[{\"']?(?:world|robot|obstacle)[\"']?[ \t]*:", re.MULTILINE)
@@ -55,7 +59,8 @@ class Answer:
         files: Path in the folder → text.
         reply: Last message.
         replies: Message after each turn.
-        blobs: Path in the folder → content of a picture or an array.
+        blobs: Path in the folder → content of a picture, an array, or another file that is no text.
+        others: Path in the folder → what was not opened there, in words; the path of a folder ends with ``/``.
         trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
     """
 
@@ -64,11 +69,12 @@ class Answer:
     reply: str = ""
     replies: tuple[str, ...] = ()
     blobs: Mapping[str, bytes] = field(default_factory=dict)
+    others: Mapping[str, str] = field(default_factory=dict)
     trusted_folder: Path | None = None
 
 
 class ArtefactError(ValueError):
-    """The folder holds something that is not graded: a file that is too large, a link that leads out of it."""
+    """The folder cannot be graded: it holds too much."""
 
 
 def from_folder(folder: Path, turns: int = 1) -> Answer:
@@ -79,41 +85,76 @@ def from_folder(folder: Path, turns: int = 1) -> Answer:
         turns: Number of turns of the case. The last message may also be numbered.
 
     Raises:
-        ArtefactError: A file is too large, a link leads out of the folder, or there are too many files.
+        ArtefactError: There are too many files.
     """
-    root = folder.resolve()
     texts: dict[str, str] = {}
     blobs: dict[str, bytes] = {}
+    others: dict[str, str] = {}
     replies: dict[int, str] = {}
-    seen = 0
-    for path in sorted(folder.rglob("*")):
+    paths = list(itertools.islice(folder.rglob("*"), _MAX_THINGS + 1))
+    if len(paths) > _MAX_THINGS:
+        raise ArtefactError(f"there are more than {_MAX_THINGS:,} files and folders")
+    for path in sorted(paths, key=lambda path: (_is_hidden(path.relative_to(folder)), path)):
         relative = path.relative_to(folder)
-        if any(part.startswith(".") or part == "__pycache__" for part in relative.parts):
+        name = relative.as_posix()
+        why = _unopened(path)
+        if path.is_dir() and not why:
+            others |= {} if any(path.iterdir()) else {f"{name}/": "an empty folder"}
+        elif _IGNORED.fullmatch(name):
             continue
-        if path.is_symlink() or not path.resolve().is_relative_to(root):
-            raise ArtefactError(f"{relative} is a link, and links are not followed")
-        ending = path.suffix.lower()
-        known = ending in (*_TEXT, *BINARY) or relative.name in _PLAIN
-        if not path.is_file() or not known or _IGNORED.fullmatch(relative.name):
-            continue
-        seen += 1
-        if seen > _MAX_FILES:
-            raise ArtefactError(f"there are more than {_MAX_FILES} files")
-        most = _MAX_BLOB_BYTES if ending in BINARY else _MAX_FILE_BYTES
-        if path.stat().st_size > most:
-            raise ArtefactError(f"{relative} has {path.stat().st_size:,} bytes; at most {most:,} are read")
-        if ending in BINARY:
-            blobs[relative.as_posix()] = path.read_bytes()
-            continue
-        # Of a scenario that is not UTF-8, the simulator must not be spared what makes it refuse the file.
-        text = path.read_bytes().decode("utf-8", errors="surrogateescape" if ending in _SCENARIO else "replace")
-        number = _turn_of(relative.as_posix(), turns)
-        if number is None:
-            texts[relative.as_posix()] = text
+        elif why or any(part in _CLOSED for part in relative.parts) or len(texts) + len(blobs) >= _MAX_FILES:
+            others[name] = why or _described(path)
+        elif (number := _turn_of(name, turns)) is not None:
+            replies[number] = path.read_bytes().decode("utf-8", errors="replace")
+        elif (text := _text(path)) is not None:
+            texts[name] = text
+        elif sum(map(len, blobs.values())) + path.stat().st_size <= _MAX_BLOBS_BYTES:
+            blobs[name] = path.read_bytes()
         else:
-            replies[number] = text
+            others[name] = _described(path)
     said = tuple(replies.get(number, "") for number in range(1, turns + 1))
-    return Answer(folder.name, texts, said[-1], said, blobs)
+    return Answer(folder.name, texts, said[-1], said, blobs, others)
+
+
+def _is_hidden(path: Path) -> bool:
+    return any(part.startswith(".") for part in path.parts)
+
+
+def _unopened(path: Path) -> str:
+    """Why a file is not opened, in words; empty if it is."""
+    if path.is_symlink():
+        return "a link"
+    if path.is_dir():
+        return ""
+    if not path.is_file():
+        return "no ordinary file"
+    is_text = path.suffix.lower() not in BINARY and b"\0" not in _start(path)
+    return _described(path) if path.stat().st_size > (_MAX_FILE_BYTES if is_text else _MAX_BLOB_BYTES) else ""
+
+
+def _start(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(4096)
+
+
+def _described(path: Path) -> str:
+    """Size and digest of a file."""
+    size = path.stat().st_size
+    digest = f", sha256 {file_digest(path)[:16]}" if size <= _MAX_DIGEST_BYTES else ""
+    return f"{size:,} bytes{digest}"
+
+
+def _text(path: Path) -> str | None:
+    """The text of a file; None if it is none."""
+    content = path.read_bytes()
+    scenario = path.suffix.lower() in _SCENARIO
+    if path.suffix.lower() in BINARY or (b"\0" in content and not scenario):
+        return None
+    try:
+        # Of a scenario that is not UTF-8, the simulator must not be spared what makes it refuse the file.
+        return content.decode("utf-8", errors="surrogateescape" if scenario else "strict")
+    except UnicodeDecodeError:
+        return None
 
 
 def _turn_of(name: str, turns: int) -> int | None:
@@ -125,9 +166,11 @@ def _turn_of(name: str, turns: int) -> int | None:
 
 
 def scenarios_in(texts: Mapping[str, str]) -> list[str]:
-    """Names of the files that look like scenarios; JSON is YAML, too."""
+    """Names of the files that look like scenarios and are not hidden; JSON is YAML, too."""
     return [
-        name for name, text in texts.items() if name.endswith((".yaml", ".yml", ".json")) and _SECTIONS.search(text)
+        name
+        for name, text in texts.items()
+        if name.endswith(_SCENARIO) and not _is_hidden(Path(name)) and _SECTIONS.search(text)
     ]
 
 

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
+import shapely.affinity
 
+from irsim.common.outline import outline
 from irsim.components.options import BehaviorOptions
 from irsim.diagnostics.diagnostic import format_path
 
@@ -170,7 +172,8 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> GradedBody:
     acts = getattr(options, "local", options)
     given = not scenario.is_parked(record) and scenario.has_written_goal(record)
     low, high = view.vel_min[:, 0].tolist(), view.vel_max[:, 0].tolist()
-    footprint = view.geometry
+    pose = tuple(view._simulation.state.initial_state(view.row)[:3].tolist())
+    footprint = view.geometry if view._simulation.appeared[view.row] >= 0 else _footprint_at(view, pose)
     radius = view.radius if _is_disc(view) else None
     return GradedBody(
         index=view.index,
@@ -179,7 +182,7 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> GradedBody:
         kinematics=kinematics,
         behavior=None if options is None else str(options.name),
         options={} if options is None else options.model_dump(mode="json"),
-        pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
+        pose=pose,
         goals=[goal[:, 0].tolist() for goal in view.goals] if given and kinematics else [],
         footprint=footprint,
         radius=radius,
@@ -191,6 +194,13 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> GradedBody:
         color=_color(record.color),
         limits={"vel_min": low, "vel_max": high, "acce": view.acce[:, 0].tolist()},
     )
+
+
+def _footprint_at(view: ObjectView, pose: Any) -> Any:
+    """The footprint of an object that comes into the world later, where it will be."""
+    own = outline(view._simulation.state, view.row).shapely()
+    turned = shapely.affinity.rotate(own, pose[2], origin=(0, 0), use_radians=True)
+    return shapely.affinity.translate(turned, *pose[:2])
 
 
 def _is_disc(view: ObjectView) -> bool:

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from irsim.navigation.clearances import clearance
-from irsim.simulation.events import Event, partner_of
+from irsim.simulation.events import BETWEEN_STEPS, Event, partner_of
 from irsim.simulation.trace import Trace, join_traces, next_rows, present_row
 from irsim_evals.grader.scene import GradedScene, open_scene
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["GradedEpisode", "run_episode"]
+__all__ = ["GradedEpisode", "dense", "run_episode"]
 
+_PATH_STEP = 0.05
+"""Distance [m] between points of a path."""
+_MAX_PARTS = 50
+"""Parts of a step."""
 _CHUNK_STEPS = 100
 """Steps between two looks at the explored share of a fog map."""
 
@@ -52,25 +55,27 @@ class GradedEpisode:
         """(T, 2) positions of an object [m]."""
         return self.trace.pose[:, index, :2]
 
+    def path(self, index: int) -> Any:
+        """(K, 2) the path of an object while it is in the world, with points between distant steps [m]."""
+        points = self.positions(index)
+        points = points[~np.isnan(points[:, 0])]
+        far = np.hypot(*np.diff(points, axis=0).T).max(initial=0.0)
+        return dense(points, math.ceil(far / _PATH_STEP))
+
     def arrival(self, name: str) -> float | None:
         """When an object reached its last goal first; None if it did not [s]."""
         return next((event.time for event in self.events if event.kind == "arrival" and event.object == name), None)
 
     def collisions(self, name: str) -> list[tuple[float, str]]:
-        """Time and partner of each collision of an object, but for those with objects that others pass through."""
+        """Time and partner of each contact of an object, within steps, too, but for those with passable objects."""
         passable = {body.name for body in self.scene.bodies if body.passable}
         contacts = []
         for event in self.events:
-            if event.kind == "collision" and name in (event.object, event.partner):
+            if event.kind in ("collision", *BETWEEN_STEPS) and name in (event.object, event.partner):
                 partner = partner_of(event, name) or ""
                 if partner not in passable:
                     contacts.append((event.time, partner))
         return contacts
-
-    @cached_property
-    def distances(self) -> Any:
-        """Distances between footprints at every row; see :func:`irsim.navigation.clearances.clearance`."""
-        return clearance(self.trace, self.scene.env.simulation)
 
     def speeds(self, index: int) -> Any:
         """(T - 1,) signed speeds along the heading [m/s], measured from one row to the next."""
@@ -79,6 +84,15 @@ class GradedEpisode:
         turn = np.diff(np.unwrap(pose[:, 2]))
         heading = pose[:-1, 2] + turn / 2
         return step[:, 0] * np.cos(heading) + step[:, 1] * np.sin(heading)
+
+
+def dense(rows: Any, parts: int) -> Any:
+    """(K, D) rows of a (T, D) table with others between them, so that each step has a number of equal parts."""
+    parts = min(parts, _MAX_PARTS)
+    if parts <= 1 or len(rows) < 2:
+        return rows
+    at = np.arange(parts * (len(rows) - 1) + 1) / parts
+    return np.stack([np.interp(at, np.arange(len(rows)), column) for column in rows.T], axis=1)
 
 
 def run_episode(

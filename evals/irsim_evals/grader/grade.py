@@ -14,14 +14,15 @@ from pathlib import Path
 from typing import Any
 
 from irsim.diagnostics.errors import IrsimError
-from irsim_evals.cases.store import Instance
+from irsim_evals.cases.drawing import stand_ins
+from irsim_evals.cases.store import Instance, given_pictures
 from irsim_evals.grader.artefact import Answer, find_scenario, rivals, scenarios_in
 from irsim_evals.grader.episode import GradedEpisode, run_episode
 from irsim_evals.grader.material import Material, with_speeds
 from irsim_evals.grader.outcome import NOT_REACHED, STAGES, Outcome, Stage, Verdict
 from irsim_evals.grader.predicates._base import Observation
 from irsim_evals.grader.programs import problems_in
-from irsim_evals.grader.sanity import check_goals, check_moves, check_scene
+from irsim_evals.grader.sanity import check_goals, check_moves, check_scene, latest_start
 
 __all__ = ["failed_verdict", "grade"]
 
@@ -30,7 +31,7 @@ _FIRST_STEPS = 3
 _MAX_STEPS = 30_000
 """Steps of an episode."""
 _MOVING_TIME = 8.0
-"""Time [s] within which every body with a goal and a behavior must have moved."""
+"""Time [s] after the last start within which every body with a goal and a behavior must have moved."""
 
 
 class _Stop(Exception):
@@ -111,7 +112,8 @@ def _open(
     case = instance.case
     named_text = find_scenario(answer, case.files)
     if case.python != "any":
-        problems = problems_in(answer.files, case.files, case.python)
+        unread = dict.fromkeys([*answer.blobs, *answer.others])
+        problems = problems_in({**unread, **answer.files}, case.files, case.python)
         _add(
             outcomes, "only-yaml", "parse", not problems,
             "no program" if case.python == "none" else "programs that only run scenarios",
@@ -120,14 +122,25 @@ def _open(
     material = Material(
         scenario=None,
         selectors=case.select,
+        passable=case.passable,
+        late=case.late,
         texts=answer.files,
         given=case.files,
         reply=answer.reply,
         replies=list(answer.replies),
         blobs=answer.blobs,
+        others=answer.others,
+        given_blobs=given_pictures(instance),
+        stand_ins=stand_ins(case.missing),
         workplace=workplace,
         trusted_folder=answer.trusted_folder,
     )
+    if case.missing:
+        made = [name for name in case.missing if name in material.names]
+        _add(
+            outcomes, "not-invented", "parse", not made, f"no file in place of the user's {', '.join(case.missing)}",
+            ", ".join(made) or "so it is",
+        )  # fmt: skip
     if not case.scenario:
         return material, False
     if named_text is None:
@@ -175,11 +188,13 @@ def _open(
 
 
 def _unread(answer: Answer) -> str:
-    """Names of files that are called like scenarios but do not look like one."""
+    """Files that are called like scenarios but do not look like one, or were not opened."""
     names = [
         name for name in answer.files if name.endswith((".yaml", ".yml")) and name not in scenarios_in(answer.files)
     ]
-    return f"; no world, robot or obstacle can be read in {', '.join(names[:3])}" if names else ""
+    words = f"; no world, robot or obstacle can be read in {', '.join(names[:3])}" if names else ""
+    closed = [f"{name} is {why}" for name, why in answer.others.items() if name.endswith((".yaml", ".yml"))]
+    return words + "".join(f"; {text}, and is not opened" for text in closed[:3])
 
 
 def _has_several(case: Any) -> bool:
@@ -190,7 +205,7 @@ def _has_several(case: Any) -> bool:
 def _sanity(instance: Instance, material: Material, outcomes: list[Outcome], moves: bool) -> None:
     case = instance.case
     for seed in case.seeds:
-        results = check_scene(material.scene(seed), overlap=not case.overlap)
+        results = check_scene(material, material.scene(seed), overlap=not case.overlap)
         outcomes += [item for item in results if not item.passed] if seed != case.seeds[0] else results
     if material.scenario is not None:
         outcomes.append(check_goals(material.scene(case.seeds[0])))
@@ -199,7 +214,8 @@ def _sanity(instance: Instance, material: Material, outcomes: list[Outcome], mov
 
 
 def _moves(instance: Instance, material: Material) -> Outcome:
-    return check_moves(run_episode(material.driven_by(None), instance.case.seeds[0], _MOVING_TIME))
+    seed = instance.case.seeds[0]
+    return check_moves(run_episode(material.driven_by(None), seed, _MOVING_TIME + latest_start(material.scene(seed))))
 
 
 def _assertions(instance: Instance, material: Material, built: bool, outcomes: list[Outcome]) -> None:
@@ -236,6 +252,7 @@ def _episodes(plan: Any, material: Material, outcomes: list[Outcome], whole: boo
             step_time = float(material.scene(seed).world.step_time)
             seconds = min(plan.seconds, _MAX_STEPS * step_time)
             scenario = with_speeds(material.driven_by(plan.behavior), material, seed, plan.speed)
+            scenario = material.made_solid(scenario, seed)
             episode = run_episode(scenario, seed, seconds, times)
         except IrsimError as error:
             why = str(error).splitlines()[0]

@@ -78,6 +78,8 @@ class Material:
     Attributes:
         scenario: The scenario that the simulator has read; None if there is no scenario to read.
         selectors: Selections of the case.
+        passable: Selections of bodies that others may pass through.
+        late: Selections of bodies that never move and may come into the world late.
         texts: Text of each file that the agent left, by its path in the folder.
         main: Path of the file that holds the scenario.
         given: Text of each file that the folder started with.
@@ -85,7 +87,10 @@ class Material:
         replies: Its message after each turn.
         document: The scenario as written.
         findings: Findings of the checker about the scenario.
-        blobs: Content of each picture or array that the agent left.
+        blobs: Content of each picture, array or other file that the agent left and that is no text.
+        others: What else lies there and was not opened, in words.
+        given_blobs: Content of each picture that the folder started with.
+        stand_ins: Content of the maps that only the user has, as the grader imagines them.
         workplace: Temporary folder of this grading.
         trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
         beside: Path of another scenario of the answer → the same for assertions about that one.
@@ -101,8 +106,13 @@ class Material:
     document: Document | None = None
     findings: Sequence[Diagnostic] = ()
     blobs: Mapping[str, bytes] = field(default_factory=dict)
+    others: Mapping[str, str] = field(default_factory=dict)
+    given_blobs: Mapping[str, bytes] = field(default_factory=dict)
+    stand_ins: Mapping[str, bytes] = field(default_factory=dict)
     workplace: Path | None = None
     trusted_folder: Path | None = None
+    passable: Sequence[str] = ()
+    late: Sequence[str] = ()
     beside: dict[str, Material] = field(default_factory=dict, repr=False)
     _scenes: dict[int, GradedScene] = field(default_factory=dict, repr=False)
 
@@ -132,16 +142,32 @@ class Material:
             return self.scenario
         return with_behavior(self.document, parse_behavior(behavior), strict=False)
 
+    def made_solid(self, scenario: ResolvedScenario, seed: int) -> ResolvedScenario:
+        """A scenario in which only those bodies are passable that may be."""
+        solid = {body.index for body in self.solid_bodies(self.scene(seed)) if body.passable}
+        objects = [
+            replace(record, unobstructed=False) if row in solid else record
+            for row, record in enumerate(scenario.objects)
+        ]
+        return replace(scenario, objects=objects) if solid else scenario
+
+    @property
+    def names(self) -> list[str]:
+        """Paths of everything that the agent left and that was not given like this, its last message apart."""
+        texts = [name for name, text in self.texts.items() if self.given.get(name) != text]
+        blobs = [name for name, content in self.blobs.items() if self.given_blobs.get(name) != content]
+        return [*texts, *blobs, *self.others]
+
     def folder(self) -> Path:
         """A folder with a copy of every file of the answer."""
         if self.workplace is None:
             raise LookupError("there is no folder to work in")
-        write_files(self.workplace, self.texts, self.blobs)
+        write_files(self.workplace, self.texts, {**self.stand_ins, **self.blobs})
         return self.workplace
 
     def open(self, file: str) -> Opened:
         """Read a scenario of the answer. Maps beside it are read from a copy of the answer."""
-        return open_text(self.texts[file], self.folder() if self.blobs else None, file)
+        return open_text(self.texts[file], self.folder() if self.blobs or self.stand_ins else None, file)
 
     def other(self, file: str) -> Material:
         """The material for assertions about another scenario of the answer, opened once; itself for its own file.
@@ -168,6 +194,11 @@ class Material:
     def bodies(self, scene: GradedScene, name: str) -> list[GradedBody]:
         """The bodies of a selection."""
         return select(scene, name, dict(self.selectors))
+
+    def solid_bodies(self, scene: GradedScene) -> list[GradedBody]:
+        """The bodies that others must not pass through, whether the scenario makes them passable or not."""
+        may = {body.index for name in self.passable for body in self.bodies(scene, name) if body.passable}
+        return [body for body in scene.bodies if body.index not in may]
 
 
 def write_files(folder: Path, texts: Mapping[str, str], blobs: Mapping[str, bytes]) -> None:

@@ -88,28 +88,31 @@ class Printed:
     episodes: Sequence[Started] = ()
 
 
-def is_program(name: str) -> bool:
-    """Whether a file is a program, by its name."""
-    return name.lower().endswith(_PROGRAMS)
+def is_program(name: str, text: str | None = None) -> bool:
+    """Whether a file is a program, by its name or its first line."""
+    return name.lower().endswith(_PROGRAMS) or (text or "").startswith("#!")
 
 
-def problems_in(texts: Mapping[str, str], given: Mapping[str, str], allowed: str) -> list[str]:
+def problems_in(texts: Mapping[str, str | None], given: Mapping[str, str], allowed: str) -> list[str]:
     """Problems of the programs of an answer.
 
     Args:
-        texts: Files of the answer.
+        texts: Files of the answer; None for what is no text.
         given: Files that it started with.
         allowed: ``none`` or ``runner``.
     """
-    names = [name for name in texts if is_program(name) and given.get(name) != texts[name]]
+    names = [
+        name for name, text in texts.items() if is_program(name, text) and (text is None or given.get(name) != text)
+    ]
     if allowed == "none":
         return [f"{name} is a program" for name in names]
     problems = []
     for name in names:
-        if not name.endswith(".py"):
+        text = texts[name]
+        if text is None or not name.endswith(".py"):
             problems.append(f"{name} is not a Python program")
         else:
-            problems += [f"{name}, {problem}" for problem in problems_of(texts[name])]
+            problems += [f"{name}, {problem}" for problem in problems_of(text)]
     return problems
 
 

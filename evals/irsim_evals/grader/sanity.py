@@ -16,9 +16,10 @@ from irsim_evals.grader.predicates._base import summary
 
 if TYPE_CHECKING:
     from irsim_evals.grader.episode import GradedEpisode
+    from irsim_evals.grader.material import Material
     from irsim_evals.grader.scene import GradedScene
 
-__all__ = ["check_goals", "check_moves", "check_scene", "overlaps"]
+__all__ = ["check_goals", "check_moves", "check_scene", "latest_start", "overlaps"]
 
 _TOUCH = 1e-6
 """Depth [m] up to which two bodies count as touching."""
@@ -26,14 +27,16 @@ _MOVED = 0.05
 """Distance [m] that a body must come to count as moving."""
 _NEAR, _NEAR_SHARE = 1.0, 0.2
 """A goal may count as reached at this distance [m], or at this share of the way to it, whichever is more."""
+_MAX_DELAY = 60.0
+"""Time [s] after which a body that has not come or not started takes no part, if there is no time limit."""
 _MAX_PAIRS = 200
 """Number of overlapping pairs that are collected."""
 
 
-def overlaps(scene: GradedScene) -> list[tuple[GradedBody, str]]:
-    """Bodies that overlap something they collide with, with the name of the other, at the start."""
+def overlaps(material: Material, scene: GradedScene) -> list[tuple[GradedBody, str]]:
+    """Bodies that overlap something they must not, with the name of the other, at the start."""
     pairs: list[tuple[GradedBody, str]] = []
-    bodies = [body for body in scene.bodies if not body.passable]
+    bodies = material.solid_bodies(scene)
     footprints = np.array([body.footprint for body in bodies], dtype=object)
     for i, j in shapely.STRtree(footprints).query(footprints, predicate="intersects").T.tolist():
         a, b = bodies[i], bodies[j]
@@ -59,8 +62,9 @@ def _depth(a: GradedBody, b: GradedBody) -> float:
     return 0.0
 
 
-def check_scene(scene: GradedScene, *, overlap: bool = True) -> list[Outcome]:
-    """Everything lies in the world, may stand still, and nothing overlaps."""
+def check_scene(material: Material, scene: GradedScene, *, overlap: bool = True) -> list[Outcome]:
+    """Everything lies in the world and is there in time, may stand still, is solid unless it may be passable, and
+    nothing overlaps."""
     x0, y0, x1, y1 = scene.bounds
     moving = [body for body in scene.bodies if not body.static or body.role == "robot"]
 
@@ -79,12 +83,34 @@ def check_scene(scene: GradedScene, *, overlap: bool = True) -> list[Outcome]:
         if not body.static and body.slowest > 0
     ]
     outcomes.append(_outcome("can-stand", "every body may stand still", restless, "all", "vel_min", scene.seed))
+    unsolid = [(body, "others pass through it") for body in material.solid_bodies(scene) if body.passable]
+    expected = "nothing is passable that the prompt does not make so"
+    outcomes.append(_outcome("solid", expected, unsolid, "nothing", "unobstructed", scene.seed))
+    may = {body.index for name in material.late for body in material.bodies(scene, name)}
+    late = [
+        (body, f"comes after {body.record.appear_time:g} s")
+        for body in scene.bodies
+        if body.record.appear_time > (0 if body.static and body.index not in may else _longest_delay(scene))
+    ]
+    expected = "what never moves is there from the start, and what moves comes before the end"
+    outcomes.append(_outcome("present", expected, late, "all", "appear_time", scene.seed))
     if overlap:
-        overlapping = [(body, f"overlaps {other}") for body, other in overlaps(scene)]
+        overlapping = [(body, f"overlaps {other}") for body, other in overlaps(material, scene)]
         outcomes.append(
             _outcome("no-overlap", "nothing overlaps at the start", overlapping, "nothing", "state", scene.seed)
         )
     return outcomes
+
+
+def _longest_delay(scene: GradedScene) -> float:
+    limit = scene.world.time_limit
+    return _MAX_DELAY if limit is None else float(limit)
+
+
+def latest_start(scene: GradedScene) -> float:
+    """Time [s] at which the last body starts that takes part at all."""
+    delays = [max(body.record.start_time, body.record.appear_time) for body in scene.bodies if not body.static]
+    return max((delay for delay in delays if delay <= _longest_delay(scene)), default=0.0)
 
 
 def check_goals(scene: GradedScene) -> Outcome:

@@ -19,6 +19,8 @@ from irsim.diagnostics.errors import IrsimError
 from irsim.scenario.read import read
 from irsim.scenario.yaml.comments import places_of_comments
 from irsim.scenario.yaml.document import load_text
+from irsim_evals.cases.drawing import stand_ins
+from irsim_evals.cases.model import Case
 from irsim_evals.cases.store import PUBLISHED, Instance, Store, case_of, golds_of
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.material import LIMITS, write_files
@@ -69,8 +71,9 @@ class Trial:
 def kind_of(trial: Trial) -> Kind | None:
     """Whether a mutant must be rejected or accepted; None if the case does not say."""
     case, seed = trial.instance.case, trial.instance.case.seeds[0]
-    before = scene_of(trial.original, tuple(trial.answer.blobs.items()), seed)
-    after = _build(trial.answer.files[trial.file], trial.answer.blobs, seed)
+    blobs = _pictures(case, trial.answer)
+    before = scene_of(trial.original, tuple(blobs.items()), seed)
+    after = _build(trial.answer.files[trial.file], blobs, seed)
     if after is None or before is None:
         return "broken mutant"
     changed = changed_facts(before, after)
@@ -87,6 +90,11 @@ def kind_of(trial: Trial) -> Kind | None:
 def scene_of(text: str, blobs: tuple[tuple[str, bytes], ...], seed: int) -> GradedScene | None:
     """The world of a gold, which is the original of many mutants in a row; None if it cannot be built."""
     return _build(text, dict(blobs), seed)
+
+
+def _pictures(case: Case, answer: Answer) -> dict[str, bytes]:
+    """What maps of the answer may be made of."""
+    return {**stand_ins(case.missing), **answer.blobs}
 
 
 def _build(text: str, blobs: Mapping[str, bytes], seed: int) -> GradedScene | None:
@@ -142,7 +150,7 @@ def _changed(
     if scenario is None:
         return
     name, text = scenario
-    scene = scene_of(text, tuple(gold.blobs.items()), instance.case.seeds[0])
+    scene = scene_of(text, tuple(_pictures(instance.case, gold).items()), instance.case.seeds[0])
     if scene is None:
         return
 

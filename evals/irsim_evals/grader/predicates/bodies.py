@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated, Any
 
+from irsim.common.arguments import is_number
 from irsim.options.registry import SENSORS
 from irsim_evals.grader.hues import discernible
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
@@ -87,7 +88,8 @@ class Each(OfBodies, ScenePredicate):
 
 @register("distinct")
 class Distinct(OfBodies, ScenePredicate):
-    """How many different values a property has among the bodies of a selection; colors must look different."""
+    """How many different values a property has among the bodies of a selection: numbers that the tolerance of the
+    property tells apart, colors that look different."""
 
     property: PropertyName
     """Name of the property."""
@@ -98,15 +100,24 @@ class Distinct(OfBodies, ScenePredicate):
         """Collect the values."""
         bodies = material.bodies(scene, self.of)
         every_value = [value_of(scene, body, self.property) for body in bodies]
-        values = set(map(show, discernible(every_value) if self.property == "color" else every_value))
+        values = discernible(every_value) if self.property == "color" else self._different(every_value)
         passed = bool(bodies) and matches(self.number, len(values), "count")
-        shown = ", ".join(sorted(values)[:6])
+        shown = ", ".join(sorted(map(show, values))[:6])
         return Observation(
             passed,
             f"{self.of}: {self.number.words()} different values of {self.property}",
             f"{len(values)}: {shown}",
             yaml_path(bodies[0], self.property) if bodies else None,
         )
+
+    def _different(self, values: list[Any]) -> list[Any]:
+        """Values without those that equal an earlier one."""
+        kept: list[Any] = []
+        kind = PROPERTIES[self.property].kind
+        for value in sorted(values, key=lambda value: (value is None, value if is_number(value) else 0)):
+            if not any(matches(Match(eq=other), value, kind) for other in kept):
+                kept.append(value)
+        return kept
 
 
 @register("placed")

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 @register("visits")
 class Visits(OfBodies, EpisodePredicate):
-    """Every body of a selection comes to some places in the order given. An empty selection fails."""
+    """Every body of a selection comes to some places in the order given, and to none of them out of turn, unless it
+    lies on the straight way between two others. An empty selection fails."""
 
     places: list[tuple[Quantity, Quantity]]
     """Places in the order in which they are visited [m]."""
@@ -39,27 +40,49 @@ class Visits(OfBodies, EpisodePredicate):
         expected = f"{self.of} visit {shown}" + (f", {self.laps} times" if self.laps > 1 else "")
         if self.stray is not None:
             expected += f", at most {show(self.stray)} m off the lines between them"
-        problems = [(body, self._problem(episode.positions(body.index))) for body in bodies]
+        problems = [(body, self._problem(episode.path(body.index))) for body in bodies]
         wrong = [(body, text) for body, text in problems if text]
         marks = [Mark(points=[list(place)], text="visit") for place in self.places] if wrong else []
         return judged(expected, problems, wrong, "waypoints", right="so it is", marks=marks)
 
     def _problem(self, way: np.ndarray) -> str:
         """The problem of a path; empty if it is right."""
-        row = 0
-        for number in range(self.laps * len(self.places)):
-            place = np.array(self.places[number % len(self.places)])
-            there = np.flatnonzero(np.hypot(*(way[row:] - place).T) <= self.tol)
-            if not there.size:
-                x, y = place.tolist()
-                return f"does not come to ({x:g}, {y:g})" + (f" after {number} visits" if number else "")
-            row += int(there[0])
+        near = np.array([np.hypot(*(way - np.array(place)).T) <= self.tol for place in self.places])
+        begins = np.flatnonzero(near[0] & ~np.concatenate([[False], near[0, :-1]])).tolist()
+        results = [self._follow(near[:, row:]) for row in begins] or [(0, self._missing(0))]
+        if all(text for _, text in results):
+            return max(results)[1]
         if self.stray is not None:
             lines = shapely.LineString([*self.places, self.places[0]])
             off = float(shapely.distance(lines, shapely.points(way)).max())
             if off > self.stray:
                 return f"gets {show(off)} m off the lines"
         return ""
+
+    def _follow(self, near: np.ndarray) -> tuple[int, str]:
+        """Number of visits in the right order, and the problem of the next one; empty if all are made.
+
+        Args:
+            near: (P, T) whether a body is at each place, from a visit of the first place on.
+        """
+        row, count = 0, len(self.places)
+        for number in range(1, self.laps * count):
+            here, there = (number - 1) % count, number % count
+            rows = np.flatnonzero(near[there, row:])
+            if not rows.size:
+                return number, self._missing(number)
+            line = shapely.LineString([self.places[here], self.places[there]])
+            for k in range(count):
+                beside = shapely.distance(line, shapely.Point(self.places[k])) > 2 * self.tol
+                if beside and near[k, row : row + int(rows[0])].any():
+                    x, y = self.places[k]
+                    return number, f"comes to ({x:g}, {y:g}) out of turn after {number} visits"
+            row += int(rows[0])
+        return self.laps * count, ""
+
+    def _missing(self, number: int) -> str:
+        x, y = self.places[number % len(self.places)]
+        return f"does not come to ({x:g}, {y:g})" + (f" after {number} visits" if number else "")
 
 
 @register("enters")
@@ -76,7 +99,7 @@ class Enters(OfBodies, EpisodePredicate):
         bodies = material.bodies(episode.scene, self.of)
         expected = f"{self.of} comes into " + ", ".join(show(list(region)) for region in self.regions)
         expected += "".join(f", never into {show(list(region))}" for region in self.avoids)
-        problems = [(body, self._why_not(episode.positions(body.index))) for body in bodies]
+        problems = [(body, self._why_not(episode.path(body.index))) for body in bodies]
         wrong = [(body, why) for body, why in problems if why]
         marks = [Mark(points=episode.positions(body.index)[::20].tolist(), text=body.name) for body, _ in wrong]
         return judged(expected, problems, wrong, "goal", right=f"all {len(bodies)}", marks=marks)
@@ -126,13 +149,12 @@ class OneWay(OfBodies, EpisodePredicate):
         extent = abs(unit[0]) * (x1 - x0) + abs(unit[1]) * (y1 - y0)
         passed, against = [], []
         for body in bodies:
-            way = episode.positions(body.index)
-            far = (way @ unit)[_within(way, self.region)]
-            if not far.size:
-                continue
-            if float((np.maximum.accumulate(far) - far).max()) > self.back:
+            way = episode.path(body.index)
+            far, rows = way @ unit, np.flatnonzero(_within(way, self.region))
+            stays = [far[stay] for stay in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if stay.size]
+            if any(float((np.maximum.accumulate(stay) - stay).max()) > self.back for stay in stays):
                 against.append((body, "goes the other way"))
-            elif float(far.max() - far.min()) >= self.most * extent:
+            elif any(float(np.ptp(stay)) >= self.most * extent for stay in stays):
                 passed.append((body, "passes"))
         return Observation(
             not against and matches(self.number, len(passed), "count"),
@@ -193,7 +215,7 @@ class Crosses(OfBodies, EpisodePredicate):
     number: Match
     """Accepted numbers of bodies that cross."""
     ahead: bool = True
-    """Only crossings ahead of the body count."""
+    """Only crossings between the body and its goal count."""
     direction: Literal["right_to_left", "left_to_right"] | None = None
     """Only those count that cross so, seen by the body."""
     spread: Quantity = 0.0
@@ -208,7 +230,8 @@ class Crosses(OfBodies, EpisodePredicate):
         if not bodies or len(ways) != 1 or ways[0].goal is None:
             return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.way_of}: {len(ways)}")
         start, goal = np.array(ways[0].pose[:2]), np.array(ways[0].goal[:2])
-        unit = (goal - start) / (math.dist(start, goal) or 1.0)
+        length = math.dist(start, goal) or 1.0
+        unit = (goal - start) / length
         own = (episode.positions(ways[0].index) - start) @ unit
         times = []
         for body in bodies:
@@ -216,7 +239,8 @@ class Crosses(OfBodies, EpisodePredicate):
             left, far = unit[0] * offset[:, 1] - unit[1] * offset[:, 0], offset @ unit
             for row in np.flatnonzero((left[1:] > 0) != (left[:-1] > 0)).tolist():
                 way = "right_to_left" if left[row + 1] > 0 else "left_to_right"
-                if (not self.ahead or far[row] > own[row]) and self.direction in (None, way):
+                ahead = own[row] < far[row] <= length
+                if (ahead or not self.ahead) and self.direction in (None, way):
                     times.append(float(episode.trace.time[row]))
                     break
         spread = max(times) - min(times) if times else 0.0

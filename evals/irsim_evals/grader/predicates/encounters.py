@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
 import shapely.affinity
 
+from irsim_evals.grader.episode import dense
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, register, summary
@@ -17,6 +19,9 @@ if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
     from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
+
+_SLIDE = 0.02
+"""Distance [m] that two bodies move relative to each other between two looks at how near they are."""
 
 
 @register("collisions")
@@ -69,8 +74,14 @@ class Separation(EpisodePredicate):
 
 
 def closest(episode: GradedEpisode, a: GradedBody, b: GradedBody) -> float:
-    """The smallest distance between the footprints of two bodies during an episode [m]."""
-    first, second = episode.trace.pose[:, a.index], episode.trace.pose[:, b.index]
+    """The smallest distance between the footprints of two bodies during an episode, within steps, too [m]."""
+    poses = episode.trace.pose[:, [a.index, b.index]]
+    poses = poses[~np.isnan(poses[:, :, 0]).any(axis=1)]
+    if not len(poses):
+        return math.inf  # they never meet in the world
+    poses[:, :, 2] = np.unwrap(poses[:, :, 2], axis=0)
+    far = np.hypot(*np.diff(poses[:, 0] - poses[:, 1], axis=0)[:, :2].T).max(initial=0.0)
+    first, second = np.hsplit(dense(poses.reshape(-1, 6), math.ceil(far / _SLIDE)), 2)
     centers = np.hypot(*(first[:, :2] - second[:, :2]).T)
     if a.radius is not None and b.radius is not None:
         return float(centers.min()) - a.radius - b.radius

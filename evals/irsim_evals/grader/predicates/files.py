@@ -33,7 +33,8 @@ _MAX_QUOTED = 200
 
 @register("files")
 class Files(AnswerPredicate):
-    """How many files of a pattern there are, and what the text of each contains."""
+    """How many files of a pattern there are, whatever their names and contents, and what the text of each contains.
+    Links and empty folders count; in what is no text, or too large to be opened, nothing is found."""
 
     pattern: str
     """Such as ``*.py``."""
@@ -49,8 +50,12 @@ class Files(AnswerPredicate):
         names = _new_files(material, self.pattern)
         wrong = []
         for name in names:
-            wrong += [f"{name} lacks /{p}/" for p in self.contain if not re.search(p, material.texts[name])]
-            wrong += [f"{name} contains /{p}/" for p in self.lack if re.search(p, material.texts[name])]
+            text = material.texts.get(name)
+            if text is None and (self.contain or self.lack):
+                wrong.append(f"{name} is {material.others.get(name, 'no text')}")
+                continue
+            wrong += [f"{name} lacks /{p}/" for p in self.contain if not re.search(p, text or "")]
+            wrong += [f"{name} contains /{p}/" for p in self.lack if re.search(p, text or "")]
         passed = matches(self.number, len(names), "count") and not wrong
         return Observation(
             passed,
@@ -61,11 +66,7 @@ class Files(AnswerPredicate):
 
 def _new_files(material: Material, pattern: str) -> list[str]:
     """Names of the files that fit a pattern and were not given like this."""
-    return [
-        name
-        for name, text in material.texts.items()
-        if fnmatch.fnmatch(name, pattern) and material.given.get(name) != text
-    ]
+    return [name for name in material.names if fnmatch.fnmatch(name, pattern)]
 
 
 @register("data")
@@ -236,7 +237,7 @@ class Program(AnswerPredicate):
         expected = f"{self.pattern}: {self.number.words()}" + "".join(f", prints /{p}/" for p in self.prints)
         if not matches(self.number, len(names), "count"):
             return Observation(False, expected, f"{len(names)}: {', '.join(names[:6])}")
-        problems = problems_in({name: material.texts[name] for name in names}, {}, "runner")
+        problems = problems_in({name: material.texts.get(name) for name in names}, {}, "runner")
         if problems:
             return Observation(False, expected, "; ".join(problems[:3]))
         printed = ""

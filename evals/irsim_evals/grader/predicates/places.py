@@ -83,6 +83,8 @@ class Near(OfBodies, ScenePredicate):
     """A place instead of a selection [m]."""
     what: Literal["position", "footprint", "goal"] = "position"
     """The part of the first selection that counts. Footprints are measured to footprints, edge to edge."""
+    edge: bool | None = None
+    """Whether to measure to the edge of the others instead of to their position; default: from footprints only."""
     distance: Match
     """Accepted distances [m]."""
     farthest: bool = False
@@ -108,16 +110,13 @@ class Near(OfBodies, ScenePredicate):
         return judged(expected, distances, wrong, "goal" if self.what == "goal" else "state", marks=marks)
 
     def _measure(self, body: GradedBody, others: list[GradedBody]) -> float | None:
-        if self.what == "goal":
-            if body.goal is None:
-                return None
-            at = shapely.Point(body.goal[:2])
-            shapes = [other.footprint for other in others if other is not body]
-        elif self.what == "footprint":
-            at, shapes = body.footprint, [other.footprint for other in others if other is not body]
-        else:
-            at = shapely.Point(body.position)
-            shapes = [shapely.Point(other.position) for other in others if other is not body]
+        point = body.goal if self.what == "goal" else body.position
+        if point is None:
+            return None
+        at = body.footprint if self.what == "footprint" else shapely.Point(point[:2])
+        edge = self.what == "footprint" if self.edge is None else self.edge
+        rest = [other for other in others if other is not body]
+        shapes = [other.footprint if edge else shapely.Point(other.position) for other in rest]
         if self.place is not None:
             shapes = [shapely.Point(self.place)]
         if not shapes:

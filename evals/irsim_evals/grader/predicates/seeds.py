@@ -95,7 +95,7 @@ class OverlapFree(SeedsPredicate):
         bad = []
         for seed in range(self.seeds):
             try:
-                if overlaps(material.scene(seed)):
+                if overlaps(material, material.scene(seed)):
                     bad.append(seed)
             except PlacementError:
                 bad.append(seed)

@@ -135,10 +135,25 @@ class Reachable(OfBodies, ScenePredicate):
         target = "its goal" if self.to is None else f"({self.to[0]:g}, {self.to[1]:g})"
         expected = f"each of {self.of} {'can' if self.possible else 'cannot'} get to {target}{closed}"
         plugs = () if self.plug is None else (self.plug,)
+        for body in bodies:
+            why = self._no_place(scene, body)
+            if why:
+                return Observation(False, expected, f"{body.name}: {why}", f"{body.entry}.goal")
         results = [(body, self._gets_there(scene, body, plugs)) for body in bodies]
         wrong = [(body, value) for body, value in results if value != self.possible]
         marks = [Mark(points=[list(place)], text=body.name) for body, _ in wrong for place in self._targets(body)]
         return judged(expected, results, wrong, "goal", said="a path for ", marks=marks)
+
+    def _no_place(self, scene: GradedScene, body: GradedBody) -> str:
+        """The reason why nobody can stand at an end of the way, so that the way says nothing; empty if one can."""
+        x0, y0, x1, y1 = scene.bounds
+        radius = disc_radius(body, self.size)
+        for x, y in [(body.pose[0], body.pose[1]), *self._targets(body)]:
+            if not (x0 <= x <= x1 and y0 <= y <= y1):
+                return f"({x:g}, {y:g}) lies outside of the world"
+            if not self.possible and not scene.is_free((x, y), radius):
+                return f"there is no room for it at ({x:g}, {y:g})"
+        return ""
 
     def _gets_there(self, scene: GradedScene, body: GradedBody, plugs: tuple[tuple[float, float, float], ...]) -> bool:
         radius = disc_radius(body, self.size)

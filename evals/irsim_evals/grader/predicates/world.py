@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 import shapely
 from pydantic import model_validator
 
+from irsim.objects.describe import grid_values
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register
@@ -21,6 +24,8 @@ WORLD_KINDS: dict[str, Kind] = {
     "height": "length",
     "left": "length",
     "bottom": "length",
+    "right": "length",
+    "top": "length",
     "step_time": "time",
     "sample_time": "time",
     "time_limit": "time",
@@ -32,17 +37,22 @@ WORLD_KINDS: dict[str, Kind] = {
     "fog_map": "flag",
     "fog_map_resolution": "size",
     "map": "name",
+    "map_file": "name",
 }
 """Property of the world → what it measures."""
 WorldProperty = Annotated[str, OneOf("property of the world", tuple(WORLD_KINDS))]
-_KEYS = {"left": "offset", "bottom": "offset", "map": "obstacle_map"}
+_EDGES = ("left", "bottom", "right", "top")
+_KEYS = {"left": "offset", "bottom": "offset", "right": "width", "top": "height"} | dict.fromkeys(
+    ("map", "map_file"), "obstacle_map"
+)
 _MIN_AREA = 1e-4
 """Differences of a smaller area come from rounding [m²]."""
 
 
 @register("world")
 class World(ScenePredicate):
-    """The world has some properties: ``width``, ``height``, ``left``, ``bottom`` (its lower left corner), …"""
+    """The world has some properties: ``width``, ``top``, ``map`` (``image``, ``ros``, ``perlin``), … ``map_file``
+    is the path of its picture as written."""
 
     has: dict[WorldProperty, Match]
     """Property → accepted values."""
@@ -69,11 +79,11 @@ class World(ScenePredicate):
 
 def _value(scene: GradedScene, name: str) -> Any:
     world = scene.world
-    if name in ("left", "bottom"):
-        return scene.bounds[0 if name == "left" else 1]
-    if name == "map":
-        given = world.obstacle_map
-        return None if given is None else str(getattr(given, "name", given))
+    if name in _EDGES:
+        return scene.bounds[_EDGES.index(name)]
+    if name in ("map", "map_file"):
+        given = getattr(world.obstacle_map, "path" if name == "map_file" else "name", None)
+        return PurePosixPath(given).as_posix() if name == "map_file" and given is not None else given
     return getattr(world, name)
 
 
@@ -96,7 +106,7 @@ class Fill(ScenePredicate):
         seen = {
             "kind": None if options is None else getattr(options, "name", "image"),
             "cell": None if grid is None else max(grid.cell),
-            "share": None if grid is None else grid.occupied / (grid.size[0] * grid.size[1]),
+            "share": _occupied_share(scene),
             "seed": getattr(options, "seed", None),
         }
         wanted = {"kind": self.kind, "cell": self.cell, "share": self.share, "seed": self.seed}
@@ -105,6 +115,16 @@ class Fill(ScenePredicate):
         expected = ", ".join(f"{key} {match.words()}" for key, match in wanted.items() if match is not None)
         observed = ", ".join(f"{key} {show(seen[key])}" for key, match in wanted.items() if match is not None)
         return Observation(not off, expected, observed, "world.obstacle_map" if off else None)
+
+
+def _occupied_share(scene: GradedScene) -> float | None:
+    """Share of the cells of the map that are occupied; None without a map."""
+    grid = scene.env.scenario.grid
+    if grid is None:
+        return None
+    if grid.occupied >= 0:
+        return float(grid.occupied / (grid.size[0] * grid.size[1]))
+    return float(np.mean(np.asarray(grid_values(scene.env.simulation)) > 50))  # drawn anew for each scene
 
 
 @register("plan")

@@ -301,8 +301,8 @@ class _Look:
         world = self.data.get("world") or {}
         if world.get("obstacle_map") is not None or world.get("boundary") == "walls":
             raise _Unknown
-        others = [thing for thing in self.things if not thing.entry.get("unobstructed")]
-        if any(thing.entry.get("unobstructed") for thing in things):
+        others = self.things
+        if any(thing.entry.get("unobstructed") for thing in others):
             raise _Unknown
         hit: set[int] = set()
         closest = math.inf
