@@ -15,7 +15,7 @@ from irsim_evals.cases.store import Instance, instance_of
 from irsim_evals.cli import app
 from irsim_evals.grader import programs
 from irsim_evals.grader.artefact import Answer
-from irsim_evals.grader.episode import GradedEpisode, run_episode
+from irsim_evals.grader.episode import GradedEpisode, at_start, run_episode, without_noise
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.limited import preload
 from irsim_evals.grader.material import Material
@@ -112,7 +112,15 @@ def episode(material: Material, seconds: float) -> GradedEpisode:
 def seen(material: Material, name: str, keys: dict[str, Any], seconds: float = 0.0) -> Observation:
     """Observation of a predicate about an answer; predicates about episodes get one of that length."""
     predicate: Any = registered()[name].model_validate(keys)
-    subject = {"scene": lambda: (material.scene(0),), "episode": lambda: (episode(material, seconds),)}
+
+    def run() -> GradedEpisode:
+        if not seconds:
+            return at_start(material.scene(0))
+        assert material.scenario is not None
+        scenario = without_noise(material.scenario) if predicate.exact else material.scenario
+        return run_episode(scenario, 0, seconds, looks=predicate.looks)
+
+    subject = {"scene": lambda: (material.scene(0),), "episode": lambda: (run(),)}
     observation: Observation = predicate.observe(material, *subject.get(predicate.subject, tuple)())
     return observation
 

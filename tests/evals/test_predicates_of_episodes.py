@@ -83,7 +83,7 @@ def test_a_line_is_crossed_on_time(robots: list[str], times: list[float], passes
 @pytest.mark.parametrize(("share", "passes"), [({"ge": 0.3, "le": 0.5}, True), ({"ge": 0.9}, False)])
 def test_a_body_ends_on_a_part_of_its_way(share: Any, passes: bool) -> None:
     material = hall(EAST, obstacle="{shape: {name: rectangle, length: 0.2, width: 4}, state: [5, 5, 0]}")
-    assert seen(material, "ends_at", {"of": "robots", "share": share}, 12).passed == passes
+    assert seen(material, "moves", {"of": "robots", "progress": share}, 12).passed == passes
 
 
 @pytest.mark.parametrize(

@@ -16,8 +16,8 @@ from irsim.common.records import ContentError, FileError, read_bytes, read_json
 from irsim_evals.grader.outcome import Cost, Step
 
 __all__ = [
-    "BINARY", "CALLS_FILE", "Answer", "ArtefactError", "cost_of", "find_scenario", "from_folder", "rivals",
-    "scenarios_in",
+    "BINARY", "CALLS_FILE", "Answer", "ArtefactError", "Call", "calls_of", "cost_of", "find_scenario",
+    "from_folder", "rivals", "scenarios_in",
 ]  # fmt: skip
 
 BINARY = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".npy", ".npz")
@@ -50,6 +50,21 @@ _MAX_STEPS = 200
 """Number of calls that results keep."""
 
 
+class Call(BaseModel):
+    """A call of a tool: a line of the log, as far as it matters here."""
+
+    model_config = ConfigDict(extra="ignore", strict=True)
+
+    tool: str
+    """Name of the tool."""
+    error: bool
+    """Whether it was refused, or ended with an error."""
+    tokens: Annotated[int, Field(ge=0, le=10**9)]
+    """Tokens of its arguments and its answer."""
+    codes: list[str] = []
+    """Codes of the errors that the answer names."""
+
+
 @dataclass(frozen=True)
 class Answer:
     """An answer to a case.
@@ -62,6 +77,7 @@ class Answer:
         blobs: Path in the folder → content of a picture, an array, or another file that is no text.
         others: Path in the folder → what was not opened there, in words; the path of a folder ends with ``/``.
         trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
+        calls: Tools that the agent called, in their order; None if there is no log of them.
     """
 
     name: str
@@ -71,6 +87,7 @@ class Answer:
     blobs: Mapping[str, bytes] = field(default_factory=dict)
     others: Mapping[str, str] = field(default_factory=dict)
     trusted_folder: Path | None = None
+    calls: tuple[Call, ...] | None = None
 
 
 class ArtefactError(ValueError):
@@ -223,19 +240,26 @@ def _blocks(reply: str) -> list[str]:
     return [block for block in blocks if _WORLD.search(block)] or blocks
 
 
-class _Call(BaseModel):
-    """A line of the file, as far as it matters here."""
-
-    model_config = ConfigDict(extra="ignore", strict=True)
-
-    tool: str
-    error: bool
-    tokens: Annotated[int, Field(ge=0, le=10**9)]
-    codes: list[str] = []
-
-
 def cost_of(path: Path) -> Cost:
     """Number of calls, of failed ones, and tokens; all unknown if there is no file that can be read.
+
+    Args:
+        path: The file. A link is not followed.
+    """
+    calls, notes = calls_of(path)
+    if calls is None:
+        return Cost(notes=notes)
+    return Cost(
+        calls=len(calls),
+        errors=sum(call.error for call in calls),
+        tokens=sum(call.tokens for call in calls),
+        notes=notes,
+        steps=[Step(tool=call.tool, error=call.error, codes=call.codes) for call in calls[-_MAX_STEPS:]],
+    )
+
+
+def calls_of(path: Path) -> tuple[tuple[Call, ...] | None, list[str]]:
+    """The calls in the log of an agent, None if there is none that can be read, and notes about what is left out.
 
     Args:
         path: The file. A link is not followed.
@@ -244,22 +268,16 @@ def cost_of(path: Path) -> Cost:
         data = read_bytes(path, _MAX_LOG_BYTES, follow=False)
     except FileError as error:
         missing = error.code == "file-not-found"
-        return Cost() if missing else Cost(notes=[f"{path.name}: {error.message}; its calls are not counted"])
+        return None, [] if missing else [f"{path.name}: {error.message}; its calls are not counted"]
     lines = [line for line in data.split(b"\n") if line.strip()]
-    calls = [call for line in lines if (call := _call_of(line)) is not None]
+    calls = tuple(call for line in lines if (call := _call_of(line)) is not None)
     left_out = len(lines) - len(calls)
-    notes = [f"{path.name}: lines that do not record a call and are left out: {left_out} of {len(lines)}"]
-    return Cost(
-        calls=len(calls),
-        errors=sum(call.error for call in calls),
-        tokens=sum(call.tokens for call in calls),
-        notes=notes if left_out else [],
-        steps=[Step(tool=call.tool, error=call.error, codes=call.codes) for call in calls[-_MAX_STEPS:]],
-    )
+    note = f"{path.name}: lines that do not record a call and are left out: {left_out} of {len(lines)}"
+    return calls, [note] if left_out else []
 
 
-def _call_of(line: bytes) -> _Call | None:
+def _call_of(line: bytes) -> Call | None:
     try:
-        return _Call.model_validate(read_json(line))
+        return Call.model_validate(read_json(line))
     except (ContentError, ValidationError):
         return None

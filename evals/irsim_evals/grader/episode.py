@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from irsim.simulation.build import is_watching
 from irsim.simulation.events import BETWEEN_STEPS, Event, partner_of
 from irsim.simulation.trace import Trace, join_traces, next_rows, present_row
+from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.scene import GradedScene, open_scene
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["GradedEpisode", "dense", "run_episode"]
+__all__ = ["GradedEpisode", "Look", "at_start", "dense", "run_episode", "without_noise"]
 
 _PATH_STEP = 0.05
 """Distance [m] between points of a path."""
@@ -23,6 +25,23 @@ _MAX_PARTS = 50
 """Parts of a step."""
 _CHUNK_STEPS = 100
 """Steps between two looks at the explored share of a fog map."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """One look of a sensor, or of a field of view, at one time.
+
+    Attributes:
+        object: Index of the object that looks.
+        by: Name of the kind of sensor; ``fov`` for the field of view.
+        met: Index of the object that each beam hits, or of each object in the field of view.
+        radial: Radial velocity that each of these beams measures [m/s]; NaN where none is measured.
+    """
+
+    object: int
+    by: str
+    met: Any
+    radial: Any
 
 
 @dataclass
@@ -35,8 +54,7 @@ class GradedEpisode:
         trace: Poses, controls and flags of all objects, from the start to the end.
         events: Arrivals, waypoints, collisions.
         explored: (time [s], explored share) of the fog map, at some times.
-        scans: Time [s] → scans of the sensors, for the times that were asked for: object name → list of
-            ``ranges`` and ``velocities``.
+        looks: Looks of all sensors and fields of view at each row of the trace; empty if they were not asked for.
     """
 
     scene: GradedScene
@@ -44,7 +62,7 @@ class GradedEpisode:
     trace: Trace
     events: list[Event]
     explored: list[tuple[float, float]]
-    scans: dict[float, dict[str, list[dict[str, Any]]]]
+    looks: list[list[Look]]
 
     @property
     def duration(self) -> float:
@@ -77,13 +95,23 @@ class GradedEpisode:
                     contacts.append((event.time, partner))
         return contacts
 
-    def speeds(self, index: int) -> Any:
-        """(T - 1,) signed speeds along the heading [m/s], measured from one row to the next."""
-        pose = self.trace.pose[:, index]
-        step = np.diff(pose[:, :2], axis=0) / self.trace.step_time
-        turn = np.diff(np.unwrap(pose[:, 2]))
+    def moment(self, time: float) -> float:
+        """A time [s]; a negative one counts back from the end."""
+        return time if time >= 0 else self.duration + time
+
+    def velocities(self, body: GradedBody) -> tuple[Any, Any, Any]:
+        """Velocities of a body, measured from one row to the next.
+
+        Returns:
+            (T - 1,) signed speed along the heading [m/s]; (T - 1,) the same, of an omnidirectional drive its speed in
+            any direction; (T - 1,) turn rate [rad/s].
+        """
+        pose, period = self.trace.pose[:, body.index], self.trace.step_time
+        step, turn = np.diff(pose[:, :2], axis=0), np.diff(np.unwrap(pose[:, 2]))
         heading = pose[:-1, 2] + turn / 2
-        return step[:, 0] * np.cos(heading) + step[:, 1] * np.sin(heading)
+        along = (step[:, 0] * np.cos(heading) + step[:, 1] * np.sin(heading)) / period
+        everywhere = np.hypot(*step.T) / period if "leftward" in body.ranges else along
+        return along, everywhere, turn / period
 
 
 def dense(rows: Any, parts: int) -> Any:
@@ -95,43 +123,64 @@ def dense(rows: Any, parts: int) -> Any:
     return np.stack([np.interp(at, np.arange(len(rows)), column) for column in rows.T], axis=1)
 
 
-def run_episode(
-    scenario: ResolvedScenario, seed: int, seconds: float, scan_times: tuple[float, ...] = ()
-) -> GradedEpisode:
+def at_start(scene: GradedScene) -> GradedEpisode:
+    """The episode of no steps: the world at its start."""
+    trace = join_traces([present_row(scene.env.simulation)])
+    return GradedEpisode(scene, scene.seed, trace, list(scene.env.events), [], [_looks(scene)])
+
+
+def run_episode(scenario: ResolvedScenario, seed: int, seconds: float, *, looks: bool = False) -> GradedEpisode:
     """Simulate one episode to its end.
 
     Args:
         scenario: The scenario.
         seed: Seed.
         seconds: Simulated time.
-        scan_times: Times at which the scans are kept [s].
+        looks: Whether the looks of the sensors and fields of view are kept.
     """
     scene = open_scene(scenario, seed)
     simulation, step_time = scene.env.simulation, float(scene.world.step_time)
     steps = max(1, round(seconds / step_time))
-    stops = sorted({min(steps, max(1, round(time / step_time))) for time in scan_times} | {1, steps})
-    parts, explored, scans, done = [present_row(simulation)], [], {}, 0
+    parts, explored, done = [present_row(simulation)], [], 0
+    kept = [_looks(scene)] if looks else []
     while done < steps:
-        due = next(stop for stop in stops if stop > done)
-        count = min(_CHUNK_STEPS, due - done)
+        count = 1 if looks or not done else min(_CHUNK_STEPS, steps - done)
         parts.append(next_rows(simulation, count, until_done=False))
         done += count
-        time = done * step_time
         fog = getattr(scene.env._world, "fog_map", None) if scene.world.fog_map else None
         if fog is not None:
-            explored.append((time, float(fog.explored_ratio)))
-        if done == due and scan_times:
-            scans[time] = _scans(scene)
-    return GradedEpisode(scene, seed, join_traces(parts), list(scene.env.events), explored, scans)
+            explored.append((done * step_time, float(fog.explored_ratio)))
+        if looks:
+            kept.append(_looks(scene))
+    return GradedEpisode(scene, seed, join_traces(parts), list(scene.env.events), explored, kept)
 
 
-def _scans(scene: GradedScene) -> dict[str, list[dict[str, Any]]]:
-    scans: dict[str, list[dict[str, Any]]] = {}
-    for view in [*scene.env.robot_list, *scene.env.obstacle_list]:
-        if view.sensors:
-            scans[view.name] = [
-                {key: np.array(value, copy=True) for key, value in sensor.get_scan().items() if value is not None}
-                for sensor in view.sensors
-                if hasattr(sensor, "get_scan")
-            ]
-    return scans
+def without_noise(scenario: ResolvedScenario) -> ResolvedScenario:
+    """The scenario with drives and sensors that do exactly what they should; itself if they do so already."""
+    objects = [
+        replace(record, kinematics=_exact(record.kinematics), sensors=[_exact(sensor) for sensor in record.sensors])
+        for record in scenario.objects
+    ]
+    return scenario if objects == scenario.objects else replace(scenario, objects=objects)
+
+
+def _exact(options: Any) -> Any:
+    return options.model_copy(update={"noise": False}) if getattr(options, "noise", False) else options
+
+
+def _looks(scene: GradedScene) -> list[Look]:
+    """What every sensor and every field of view that the scenario gives meets now."""
+    looks = []
+    views = sorted([*scene.env.robot_list, *scene.env.obstacle_list], key=lambda view: view.index)
+    index = {view.id: view.index for view in views}
+    for view in views:
+        for sensor in view.sensors:
+            if hasattr(sensor, "hits"):
+                hit = sensor.valid
+                met = np.array([index[number] for number in sensor.hits[hit].tolist()], dtype=int)
+                radial = getattr(sensor, "radial_velocity", None)
+                looks.append(Look(view.index, sensor.sensor_type, met, met * np.nan if radial is None else radial[hit]))
+        if is_watching(view.record):
+            met = np.array([other.index for other in view.surroundings.seen], dtype=int)
+            looks.append(Look(view.index, "fov", met, met * np.nan))
+    return looks

@@ -6,9 +6,10 @@ in a process with limits.
 
 from __future__ import annotations
 
+import functools
 import tempfile
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from irsim.diagnostics.errors import IrsimError
 from irsim_evals.cases.drawing import stand_ins
 from irsim_evals.cases.store import Instance, given_pictures
 from irsim_evals.grader.artefact import Answer, find_scenario, rivals, scenarios_in
-from irsim_evals.grader.episode import GradedEpisode, run_episode
+from irsim_evals.grader.episode import GradedEpisode, at_start, run_episode, without_noise
 from irsim_evals.grader.material import Material, with_speeds
 from irsim_evals.grader.outcome import NOT_REACHED, STAGES, Outcome, Stage, Verdict
 from irsim_evals.grader.predicates._base import Observation
@@ -134,6 +135,7 @@ def _open(
         stand_ins=stand_ins(case.missing),
         workplace=workplace,
         trusted_folder=answer.trusted_folder,
+        calls=answer.calls,
     )
     if case.missing:
         made = [name for name in case.missing if name in material.names]
@@ -222,10 +224,10 @@ def _assertions(instance: Instance, material: Material, built: bool, outcomes: l
     case: Any = instance.case
     for item in case.check:
         predicate = item.predicate
-        when = item.when or ("built" if predicate.subject in ("scene", "seeds") else "always")
+        when = item.when or ("always" if predicate.subject == "answer" else "built")
         if (when == "built" and not built) or (when == "unbuilt" and built):
             continue
-        if predicate.subject == "scene":
+        if predicate.subject in ("scene", "episode"):
             _observe(outcomes, item, (_in_scene(material, item, seed) for seed in case.seeds))
         else:
             _observe(outcomes, item, [lambda item=item: item.predicate.observe(material.other(item.file))])
@@ -234,7 +236,9 @@ def _assertions(instance: Instance, material: Material, built: bool, outcomes: l
 def _in_scene(material: Material, item: Any, seed: int) -> Any:
     def look() -> Observation:
         about = material.other(item.file)
-        observation: Observation = item.predicate.observe(about, about.scene(seed))
+        scene = about.scene(seed)
+        world = at_start(scene) if item.predicate.subject == "episode" else scene
+        observation: Observation = item.predicate.observe(about, world)
         observation.seed = seed if observation.seed is None else observation.seed
         return observation
 
@@ -242,25 +246,13 @@ def _in_scene(material: Material, item: Any, seed: int) -> Any:
 
 
 def _episodes(plan: Any, material: Material, outcomes: list[Outcome], whole: bool) -> None:
-    """Run the episodes of a plan one after the other, so that only one is held in memory."""
+    """Run the episodes of a plan one after the other, so that only those of one seed are held in memory."""
     seen: dict[str, list[Observation]] = {item.id: [] for item in plan.check}
-    times = tuple(sorted({t for item in plan.check for t in item.predicate.scan_times()}))
+    watched = any(item.predicate.looks for item in plan.check)
     for seed in plan.seeds:
-        episode: GradedEpisode | None = None
-        why = ""
-        try:
-            step_time = float(material.scene(seed).world.step_time)
-            seconds = min(plan.seconds, _MAX_STEPS * step_time)
-            scenario = with_speeds(material.driven_by(plan.behavior), material, seed, plan.speed)
-            scenario = material.made_solid(scenario, seed)
-            episode = run_episode(scenario, seed, seconds, times)
-        except IrsimError as error:
-            why = str(error).splitlines()[0]
+        run = _runs(plan, material, seed, watched)
         for item in plan.check:
-            if episode is None:
-                seen[item.id].append(Observation(False, "an episode", why, seed=seed))
-                continue
-            look = _guarded(lambda item=item, episode=episode: item.predicate.observe(material, episode))
+            look = _guarded(lambda item=item, run=run: item.predicate.observe(material, run(item.predicate.exact)))
             look.seed = seed if look.seed is None else look.seed
             seen[item.id].append(look)
             if not (look.passed or item.soft or whole) and plan.share == 1:
@@ -273,6 +265,25 @@ def _episodes(plan: Any, material: Material, outcomes: list[Outcome], whole: boo
         if plan.share < 1:
             chosen.observed = f"{len(looks) - len(bad)} of {len(looks)} episodes; {chosen.observed}"
         outcomes.append(_outcome(item, chosen, passed))
+
+
+def _runs(plan: Any, material: Material, seed: int, looks: bool) -> Callable[[bool], GradedEpisode]:
+    """Runs the episode of a seed when it is asked for first: as written, or without any noise."""
+
+    @functools.cache
+    def scenario() -> Any:
+        driven = with_speeds(material.driven_by(plan.behavior), material, seed, plan.speed)
+        return material.made_solid(driven, seed)
+
+    @functools.cache
+    def run(exact: bool) -> GradedEpisode:
+        chosen = without_noise(scenario()) if exact else scenario()
+        if exact and chosen is scenario():
+            return run(False)
+        seconds = min(plan.seconds, _MAX_STEPS * float(material.scene(seed).world.step_time))
+        return run_episode(chosen, seed, seconds, looks=looks)
+
+    return run
 
 
 def _observe(outcomes: list[Outcome], item: Any, looks: Iterable[Any]) -> None:
@@ -292,6 +303,8 @@ def _guarded(look: Any) -> Observation:
     try:
         observation: Observation = look()
         return observation
+    except IrsimError as error:
+        return Observation(False, "something that can be observed", str(error).splitlines()[0])
     except Exception as error:  # the grader is total: what cannot be observed does not hold
         return Observation(False, "something that can be observed", f"{type(error).__name__}: {error}"[:300])
 

@@ -27,7 +27,7 @@ from typing import Any
 import irsim.components
 from irsim.common.child import how_ended, limit
 from irsim_evals.cases.store import Instance
-from irsim_evals.grader.artefact import CALLS_FILE, Answer, ArtefactError, cost_of, from_folder
+from irsim_evals.grader.artefact import CALLS_FILE, Answer, ArtefactError, calls_of, cost_of, from_folder
 from irsim_evals.grader.outcome import Verdict
 
 __all__ = [
@@ -88,6 +88,7 @@ def grade_folder(instance: Instance, folder: Path, calls: Path | None = None, ru
     """
     try:
         answer = from_folder(folder, turns=1 + len(instance.case.turns))
+        answer = replace(answer, calls=calls_of(calls or folder / CALLS_FILE)[0])
     except (ArtefactError, OSError) as error:
         verdict = _failed(instance, None, str(error))
     else:

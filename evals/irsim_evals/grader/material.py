@@ -20,6 +20,7 @@ from irsim_evals.grader.selection import Selector, select
 if TYPE_CHECKING:
     from irsim.diagnostics.diagnostic import Diagnostic
     from irsim.scenario.resolve.resolved import ResolvedScenario
+    from irsim_evals.grader.artefact import Call
 
 __all__ = ["LIMITS", "Material", "Opened", "open_text", "with_speeds", "write_files"]
 
@@ -93,6 +94,7 @@ class Material:
         stand_ins: Content of the maps that only the user has, as the grader imagines them.
         workplace: Temporary folder of this grading.
         trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
+        calls: Tools that the agent called, in their order; None if there is no log of them.
         beside: Path of another scenario of the answer → the same for assertions about that one.
     """
 
@@ -111,6 +113,7 @@ class Material:
     stand_ins: Mapping[str, bytes] = field(default_factory=dict)
     workplace: Path | None = None
     trusted_folder: Path | None = None
+    calls: tuple[Call, ...] | None = None
     passable: Sequence[str] = ()
     late: Sequence[str] = ()
     beside: dict[str, Material] = field(default_factory=dict, repr=False)

@@ -152,8 +152,10 @@ def narrowest_gap(grid: ClearanceGrid, start: Point, goal: Point) -> Gap | None:
     along = grid.at(way)
     lower = np.concatenate([[True], along[1:] <= along[:-1]]) & np.concatenate([along[:-1] <= along[1:], [True]])
     tight = np.flatnonzero(lower & (along <= width + grid.half))
-    tight = tight[np.argsort(along[tight], kind="stable")][:_MAX_MEASURED]
-    return min((_measure_gap(grid, way, int(k)) for k in tight), key=lambda gap: gap.width)
+    tight = tight[np.argsort(along[tight], kind="stable")]
+    narrowest = np.argmin(np.hypot(*(way - (x, y)).T))  # where a path keeps close to walls, much of it seems as tight
+    measured = dict.fromkeys([int(narrowest), *tight.tolist()])
+    return min((_measure_gap(grid, way, k) for k in list(measured)[:_MAX_MEASURED]), key=lambda gap: gap.width)
 
 
 def _measure_gap(grid: ClearanceGrid, way: NDArray[np.float64], k: int) -> Gap:

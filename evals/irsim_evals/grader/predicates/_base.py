@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict
 
 from irsim.common.lazy import module_names
 from irsim_evals.grader.body import GradedBody
-from irsim_evals.grader.matching import show
+from irsim_evals.grader.matching import Kind, Match, matches, show
 from irsim_evals.grader.outcome import Mark, Stage
 from irsim_evals.grader.selection import Selection
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AnswerPredicate", "EpisodePredicate", "Observation", "OfBodies", "Predicate", "ScenePredicate", "SeedsPredicate",
-    "judged", "middle", "register", "registered", "summary",
+    "judged", "measured", "middle", "register", "registered", "summary",
 ]  # fmt: skip
 
 _MAX_NAMED = 4
@@ -95,14 +95,14 @@ class EpisodePredicate(Predicate):
 
     stage: ClassVar[Stage] = "behavior"
     subject: ClassVar[Literal["scene", "seeds", "episode", "answer"]] = "episode"
+    looks: ClassVar[bool] = False
+    """Whether it needs the looks of sensors and fields of view."""
+    exact: ClassVar[bool] = False
+    """Whether it is about the episode without noise of drives and sensors."""
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look at one episode."""
         raise NotImplementedError
-
-    def scan_times(self) -> tuple[float, ...]:
-        """Times at which it needs the scans of the sensors [s]."""
-        return ()
 
 
 class AnswerPredicate(Predicate):
@@ -142,6 +142,33 @@ def judged(
     where = f"{wrong[0][0].entry}.{key}" if wrong else None
     observed = summary(wrong) if wrong else right or summary(seen)
     return Observation(not wrong, expected, said + observed, where, marks=list(marks))
+
+
+def measured(
+    of: str,
+    bodies: Sequence[GradedBody],
+    wanted: Mapping[str, tuple[Match | None, Kind]],
+    measure: Callable[[GradedBody], Mapping[str, Any]],
+    key: str,
+) -> Observation:
+    """The observation of bodies, of which there must be some, each of them with accepted values of some measures.
+
+    Args:
+        of: Name of the selection.
+        bodies: The bodies.
+        wanted: Name of a measure → its accepted values, None for any, and its kind.
+        measure: The values of the measures of a body.
+        key: Key of an entry that decides them.
+    """
+    asked = {name: (match, kind) for name, (match, kind) in wanted.items() if match is not None}
+    expected = f"{of}: " + ", ".join(f"{name} {match.words()}" for name, (match, _) in asked.items())
+    seen, wrong = [], []
+    for body in bodies:
+        values = measure(body)
+        seen.append((body, ", ".join(f"{name} {show(values[name])}" for name in asked)))
+        if not all(matches(match, values[name], kind) for name, (match, kind) in asked.items()):
+            wrong.append(seen[-1])
+    return judged(expected, seen, wrong, key)
 
 
 def middle(bodies: Sequence[GradedBody]) -> tuple[float, float]:

@@ -129,39 +129,3 @@ class RangeTrend(OfBodies, EpisodePredicate):
         passed = matches(self.nearer, nearer, "count") and matches(self.farther, farther, "count")
         text = summary([(body, f"{show(change)} m") for body, change in changes])
         return Observation(passed, expected, f"nearer {nearer}, farther {farther} ({text})", f"{bodies[0].entry}.goal")
-
-
-@register("radial")
-class Radial(EpisodePredicate):
-    """How many beams measure a radial velocity below and above a threshold."""
-
-    of: Selection
-    """Selection of the one body with the sensor."""
-    at: Quantity
-    """Time of the scan [s]."""
-    faster_than: Quantity
-    """Threshold [m/s]."""
-    approaching: Match
-    """Accepted numbers of beams below minus the threshold."""
-    receding: Match
-    """Accepted numbers of beams above the threshold."""
-
-    def scan_times(self) -> tuple[float, ...]:
-        """The one scan."""
-        return (self.at,)
-
-    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
-        """Count the beams."""
-        bodies = material.bodies(episode.scene, self.of)
-        expected = f"beams nearer: {self.approaching.words()}, away: {self.receding.words()}"
-        if len(bodies) != 1 or not episode.scans:
-            return Observation(False, expected, f"{self.of}: {len(bodies)}")
-        time = min(episode.scans, key=lambda seen: abs(seen - self.at))
-        for scan in episode.scans[time].get(bodies[0].name, []):
-            if "radial_velocity" not in scan:
-                continue
-            values = np.asarray(scan["radial_velocity"], dtype=float)
-            near, away = int((values < -self.faster_than).sum()), int((values > self.faster_than).sum())
-            passed = matches(self.approaching, near, "count") and matches(self.receding, away, "count")
-            return Observation(passed, expected, f"nearer {near}, away {away}", f"{bodies[0].entry}.sensors")
-        return Observation(False, expected, "no sensor measures radial velocities", f"{bodies[0].entry}.sensors")

@@ -1,17 +1,18 @@
-"""How bodies move in an episode: whether they arrive, how far and how fast they get, what they explore."""
+"""How bodies move in an episode: whether they arrive, how far, how fast and when they get where, what they explore."""
 
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from irsim_evals.grader.matching import Match, Quantity, matches, show
-from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, judged, register, summary
+from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
+from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, measured, register, summary
 
 if TYPE_CHECKING:
+    from irsim_evals.grader.body import GradedBody
     from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
 
@@ -52,101 +53,125 @@ class Arrive(OfBodies, EpisodePredicate):
         )
 
 
-@register("ends_at")
-class EndsAt(OfBodies, EpisodePredicate):
-    """Every body of a selection ends at a share of the straight way from its start to its last goal: 0 is the start, 1
-    the goal. An empty selection fails."""
+@register("moves")
+class Moves(OfBodies, EpisodePredicate):
+    """How every body of a selection moves in an episode, or in a part of it. An empty selection fails."""
 
-    share: Match
-    """Accepted shares."""
-
-    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
-        """Look at the last positions."""
-        bodies = material.bodies(episode.scene, self.of)
-        expected = f"{self.of} ends at {self.share.words()} of its way"
-        missing = [body for body in bodies if body.goal is None]
-        if missing:
-            return Observation(False, expected, f"{missing[0].name}: no goal")
-        shares = []
-        for body in bodies:
-            (x, y), goal = body.pose[:2], body.goal or [0.0, 0.0]
-            way = math.dist((x, y), goal[:2]) or math.inf
-            end_x, end_y = episode.positions(body.index)[-1].tolist()
-            along = ((end_x - x) * (goal[0] - x) + (end_y - y) * (goal[1] - y)) / way
-            shares.append((body, along / way))
-        wrong = [(body, value) for body, value in shares if not matches(self.share, value, "share")]
-        marks = [Mark(points=[episode.positions(body.index)[-1].tolist()], text=body.name) for body, _ in wrong]
-        return judged(expected, shares, wrong, "behavior", marks=marks)
-
-
-@register("travel")
-class Travel(OfBodies, EpisodePredicate):
-    """How far every body of a selection gets. An empty selection fails."""
-
+    since: Quantity = 0.0
+    """Begin of the part [s]; a negative time counts back from the end of the episode."""
     farthest: Match | None = None
-    """Accepted values of the greatest distance from the start [m]; 0 for a body that stays."""
+    """Accepted values of the greatest distance from where it was at the begin [m]; 0 for a body that stays."""
     path: Match | None = None
     """Accepted lengths of the path driven [m]."""
     dx: Match | None = None
-    """Accepted differences of x from start to end [m]."""
+    """Accepted differences of x from begin to end [m]."""
     dy: Match | None = None
-    """Accepted differences of y from start to end [m]."""
+    """Accepted differences of y from begin to end [m]."""
+    progress: Match | None = None
+    """Accepted shares of the straight way from its start to its last goal at which it ends: 0 is the start, 1 the
+    goal."""
+    fastest: Match | None = None
+    """Accepted values of the greatest speed along the heading [m/s]; of omnidirectional drives, in any direction."""
+    slowest: Match | None = None
+    """Accepted values of the smallest signed speed along the heading [m/s]; negative in reverse."""
+    turn: Match | None = None
+    """Accepted values of the greatest turn rate, to either side [rad/s]."""
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Measure the paths."""
+        first = int(np.searchsorted(episode.trace.time, episode.moment(self.since) - 1e-9))
+        wanted: dict[str, tuple[Match | None, Kind]] = {
+            "farthest": (self.farthest, "length"),
+            "path": (self.path, "length"),
+            "dx": (self.dx, "length"),
+            "dy": (self.dy, "length"),
+            "progress": (self.progress, "share"),
+            "fastest": (self.fastest, "speed"),
+            "slowest": (self.slowest, "speed"),
+            "turn": (self.turn, "rate"),
+        }
         bodies = material.bodies(episode.scene, self.of)
-        wanted = {"farthest": self.farthest, "path": self.path, "dx": self.dx, "dy": self.dy}
-        words = ", ".join(f"{name} {match.words()} m" for name, match in wanted.items() if match is not None)
-        expected = f"{self.of}: {words}"
-        measures, wrong = [], []
-        for body in bodies:
-            way = episode.positions(body.index)
-            seen = {
-                "farthest": float(np.hypot(*(way - way[0]).T).max()),
-                "path": float(np.hypot(*np.diff(way, axis=0).T).sum()),
-                "dx": float(way[-1, 0] - way[0, 0]),
-                "dy": float(way[-1, 1] - way[0, 1]),
-            }
-            text = ", ".join(f"{key} {show(seen[key])}" for key, match in wanted.items() if match is not None)
-            measures.append((body, text))
-            if any(match is not None and not matches(match, seen[key], "length") for key, match in wanted.items()):
-                wrong.append((body, text))
-        return judged(expected, measures, wrong, "behavior")
+        return measured(self.of, bodies, wanted, partial(_motion, episode, first), "behavior")
 
 
-@register("speed")
-class Speed(OfBodies, EpisodePredicate):
-    """Measured speeds of every body of a selection. An empty selection fails."""
+def _motion(episode: GradedEpisode, first: int, body: GradedBody) -> dict[str, float | None]:
+    """Measures of the motion of a body from a row of the trace on."""
+    way = episode.positions(body.index)[first:]
+    along, everywhere, turn = (values[first:] for values in episode.velocities(body))
+    return {
+        "farthest": float(np.hypot(*(way - way[0]).T).max()),
+        "path": float(np.hypot(*np.diff(way, axis=0).T).sum()),
+        "dx": float(way[-1, 0] - way[0, 0]),
+        "dy": float(way[-1, 1] - way[0, 1]),
+        "progress": _progress(body, way[-1]),
+        "fastest": float(everywhere.max()) if along.size else 0.0,
+        "slowest": float(along.min()) if along.size else 0.0,
+        "turn": float(np.abs(turn).max(initial=0.0)),
+    }
 
-    highest: Match | None = None
-    """Accepted values of the greatest speed along the heading [m/s]; of omnidirectional drives, in any direction."""
-    lowest: Match | None = None
-    """Accepted values of the smallest signed speed along the heading [m/s]; negative in reverse."""
+
+def _progress(body: GradedBody, place: np.ndarray) -> float | None:
+    """The share of the straight way to its last goal that a body has come; None without such a way."""
+    if body.goal is None or math.dist(body.pose[:2], body.goal[:2]) == 0:
+        return None
+    start = np.array(body.pose[:2])
+    way = np.array(body.goal[:2]) - start
+    return float((place - start) @ way / (way @ way))
+
+
+@register("state_at")
+class StateAt(OfBodies, EpisodePredicate):
+    """Where every body of a selection is at a time of an episode without noise, and how it moves then. An empty
+    selection fails."""
+
+    exact = True
+
+    at: Quantity
+    """The time [s]; the next earlier step counts. A negative time counts back from the end of the episode."""
+    x: Match | None = None
+    """Accepted values of its x [m]."""
+    y: Match | None = None
+    """Accepted values of its y [m]."""
+    heading: Match | None = None
+    """Accepted headings [rad]."""
+    speed: Match | None = None
+    """Accepted speeds along its heading, negative in reverse, and of omnidirectional drives in any direction, measured
+    over the step that ends then [m/s]. At the time 0 there is none."""
     turn: Match | None = None
-    """Accepted values of the greatest turn rate [rad/s]."""
+    """Accepted turn rates, positive to the left, measured over the step that ends then [rad/s]."""
+    goal_distance: Match | None = None
+    """Accepted distances from its last goal [m]."""
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
-        """Measure from step to step."""
+        """Look at the row of the trace."""
+        time = episode.moment(self.at)
+        if not -1e-9 <= time <= episode.duration + 1e-9:
+            return Observation(False, f"{self.of} at {time:g} s", f"the episode lasts {episode.duration:g} s")
+        row = int(np.searchsorted(episode.trace.time, time + 1e-9, side="right")) - 1
+        wanted: dict[str, tuple[Match | None, Kind]] = {
+            "x": (self.x, "length"),
+            "y": (self.y, "length"),
+            "heading": (self.heading, "heading"),
+            "speed": (self.speed, "speed"),
+            "turn": (self.turn, "rate"),
+            "goal_distance": (self.goal_distance, "length"),
+        }
         bodies = material.bodies(episode.scene, self.of)
-        wanted = {"highest": self.highest, "lowest": self.lowest, "turn": self.turn}
-        expected = ", ".join(f"{name} {match.words()}" for name, match in wanted.items() if match is not None)
-        measures, wrong = [], []
-        for body in bodies:
-            along = episode.speeds(body.index)
-            pose = episode.trace.pose[:, body.index]
-            moved = np.hypot(*np.diff(pose[:, :2], axis=0).T) / episode.trace.step_time
-            turned = np.abs(np.diff(np.unwrap(pose[:, 2]))) / episode.trace.step_time
-            everywhere = "leftward" in body.ranges
-            seen = {
-                "highest": float((moved if everywhere else along).max()),
-                "lowest": float(along.min()),
-                "turn": float(turned.max()),
-            }
-            text = ", ".join(f"{key} {show(seen[key])}" for key, match in wanted.items() if match is not None)
-            measures.append((body, text))
-            if any(match is not None and not matches(match, seen[key], "speed") for key, match in wanted.items()):
-                wrong.append((body, text))
-        return judged(f"{self.of}: {expected}", measures, wrong, "vel_max")
+        return measured(f"{self.of} at {time:g} s", bodies, wanted, partial(_state, episode, row), "behavior")
+
+
+def _state(episode: GradedEpisode, row: int, body: GradedBody) -> dict[str, float | None]:
+    """Where a body is at a row of the trace, and how it moves."""
+    x, y, heading = episode.trace.pose[row, body.index].tolist()
+    _, speed, turn = episode.velocities(body)
+    return {
+        "x": x,
+        "y": y,
+        "heading": heading,
+        "speed": float(speed[row - 1]) if row else None,
+        "turn": float(turn[row - 1]) if row else None,
+        "goal_distance": None if body.goal is None else math.dist((x, y), body.goal[:2]),
+    }
 
 
 @register("roams")
