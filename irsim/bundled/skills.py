@@ -87,16 +87,17 @@ class Installed:
     changed: list[str] = field(default_factory=list)
 
 
-def find_skills(names: Iterable[str] = ()) -> list[Skill]:
+def find_skills(names: Iterable[str] = (), place: Path | None = None) -> list[Skill]:
     """The skills of this package, by name.
 
     Args:
         names: Names of the skills to return; all if empty.
+        place: Folder with other skills, which take their place.
 
     Raises:
         SkillError: No skill has that name.
     """
-    known = {path.parent.name: path for path in sorted(resources.skills_directory().glob("*/SKILL.md"))}
+    known = {path.parent.name: path for path in sorted((place or resources.skills_directory()).glob("*/SKILL.md"))}
     wanted = list(dict.fromkeys(names)) or list(known)
     for name in wanted:
         if name not in known:

@@ -22,6 +22,7 @@ from irsim_evals.baselines.retrieval import Task, best_template, slots
 from irsim_evals.cases.store import Instance, case_ids, case_of
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
+from irsim_evals.harness.arms import Side
 from irsim_evals.results import Trial, read_results, trial_of
 from tests.evals.conftest import EVALS, irsim_evals, refusal
 
@@ -125,18 +126,20 @@ def test_bad_input_is_named(arguments, message):
 
 
 def test_model_arms_get_the_limits_that_are_given(tmp_path, monkeypatch):
-    calls: list[tuple[str, int, dict[str, Any]]] = []
+    calls: list[tuple[list[Side], int, dict[str, Any]]] = []
 
-    def run_arm(arm: str, instances: Sequence[Instance], **options: Any) -> list[Trial]:
+    def run_arm(arm: list[Side], instances: Sequence[Instance], **options: Any) -> list[Trial]:
         calls.append((arm, len(instances), options))
-        return [trial_of(one, grade(one, Answer("a", {}, "?")), arm, model=options["model"]) for one in instances]
+        return [
+            trial_of(one, grade(one, Answer("a", {}, "?")), arm[0].label, model=options["model"]) for one in instances
+        ]
 
     monkeypatch.setattr("irsim_evals.harness.run.run_arm", run_arm)
     options = ["--model", "anthropic/some", "--epochs", "3", "--token-limit", "9000", "--cost-limit", "0.5"]
     done = irsim_evals("run", "--arm", "skill", "pub-01", *options, "--output", tmp_path / "out", "--json")
     assert done.exit_code == 0, done.output
     ((arm, number, given),) = calls
-    assert (arm, number, given["model"], given["epochs"]) == ("skill", 1, "anthropic/some", 3)
+    assert (arm, number, given["model"], given["epochs"]) == ([Side("skill")], 1, "anthropic/some", 3)
     assert (given["token_limit"], given["cost_limit"], given["time_limit"]) == (9000, 0.5, None)
     assert given["log_dir"] == tmp_path / "out" / "logs"
     assert json.loads(done.stdout)["arms"][0]["passed"] == 0

@@ -16,7 +16,8 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.baselines.arms import BASELINES, run_baseline
 from irsim_evals.cases.store import Instance
 from irsim_evals.cli.choice import CasesFolder, GoldsFolder, Wanted, chosen, end_with, read_cases, store_of
-from irsim_evals.harness.arms import MODEL_ARMS
+from irsim_evals.harness.arms import MODEL_ARMS, Side
+from irsim_evals.report.comparison import compare
 from irsim_evals.results import Trial, results_of, write_results
 from irsim_evals.statistics import mean_pass_hat_k, wilson
 
@@ -31,9 +32,18 @@ def run(
     arm: Annotated[
         list[str] | None,
         typer.Option(
-            help="Who answers: null, retrieval, repair; baselines for these three; no-skill, skill, skill+mcp or "
-            "skill+mcp+distractors with a model. Give it several times for several arms."
+            help="Who answers: null, retrieval, repair; baselines for these three; no-skill, skill, skill+cli, "
+            "skill+mcp or skill+mcp+distractors with a model. Give it several times for several arms."
         ),
+    ] = None,
+    against: Annotated[
+        str | None, typer.Option(metavar="ARM", help="A second arm: each case is answered by one and then the other.")
+    ] = None,
+    skills: Annotated[
+        Path | None, typer.Option(exists=True, file_okay=False, help="Skills that agents read instead: DIR/*/SKILL.md.")
+    ] = None,
+    instructions: Annotated[
+        Path | None, typer.Option(exists=True, dir_okay=False, help="Text that the MCP server says of itself instead.")
     ] = None,
     fresh: Annotated[int | None, typer.Option(help="Seed of fresh instances: other numbers, names and words.")] = None,
     trials: Annotated[
@@ -68,8 +78,9 @@ def run(
 ) -> None:
     """Let baselines or a model answer the cases, grade the answers and write results.json.
 
-    The baselines need neither a model nor the network: ``irsim-evals run --arm baselines``. Exits with 0 when all
-    arms have run, however many cases passed.
+    The baselines need neither a model nor the network: ``irsim-evals run --arm baselines``. With --against the texts of
+    --skills and --instructions are those of the second arm. Exits with 0 when all arms have run, however many cases
+    passed.
     """
     arms = _arms(arm)
     store = store_of(cases_folder, golds_folder)
@@ -82,13 +93,14 @@ def run(
         raise ArgumentError(f"{output} is a file", "give a folder with --output")
     seeds = [fresh, *range((fresh or 0) + 1, (fresh or 0) + trials)]  # further instances have the seeds that follow
     instances, bad = read_cases(chosen(wanted, store), store, seeds)
+    groups = _sides(arms, against, skills, instructions)
     done: list[Trial] = []
-    for name in arms:
-        with progress(name) as report:
-            if name in BASELINES:
-                done += run_baseline(name, instances, report)
+    for group in groups:
+        with progress(" against ".join(side.label for side in group)) as report:
+            if group[0].arm in BASELINES:
+                done += run_baseline(group[0].arm, instances, report)
             else:
-                done += _run_model(name, instances, options, report)
+                done += _run_model(group, instances, options, report)
     path = output / "results.json"
     write_results(results_of(done, store), path)
     if verdicts is not None:
@@ -99,6 +111,11 @@ def run(
         sys.stdout.write(json.dumps({"arms": rows, "results": str(path)}, ensure_ascii=False) + "\n")
     else:
         _show(rows, path)
+        if against is not None:
+            first, second = dict.fromkeys(trial.arm for trial in done)
+            a, b = ([trial for trial in done if trial.arm == name] for name in (first, second))
+            for sentence in compare(a, b, first, second).sentences:
+                console().print(sentence, soft_wrap=True)
     end_with(bad)
 
 
@@ -169,11 +186,28 @@ def _arms(given: list[str] | None) -> list[str]:
     return list(dict.fromkeys(arms))
 
 
+def _sides(arms: list[str], against: str | None, skills: Path | None, instructions: Path | None) -> list[list[Side]]:
+    """The arms with their texts; those in one list answer in turn.
+
+    Raises:
+        ArgumentError: There is not one arm to be compared, or only a model reads the texts.
+    """
+    if against is None:
+        return [[Side(arm, *((None, None) if arm in BASELINES else (skills, instructions)))] for arm in arms]
+    second = _arms([against])
+    if len(arms) + len(second) != 2:
+        raise ArgumentError("--against compares one arm with one other", "give --arm once, and one arm to --against")
+    sides = [Side(arms[0]), Side(second[0], skills, instructions)]
+    return [[side] for side in sides] if any(side.arm in BASELINES for side in sides) else [sides]
+
+
 def _run_model(
-    arm: str, instances: list[Instance], options: dict[str, Any], report: Callable[[int, int], None]
+    sides: list[Side], instances: list[Instance], options: dict[str, Any], report: Callable[[int, int], None]
 ) -> list[Trial]:
     if options["model"] is None and options["replay"] is None:
-        raise ArgumentError(f"the arm {arm} needs a model", "add --model anthropic/NAME, or --replay RECORDING")
+        raise ArgumentError(
+            f"the arm {sides[0].label} needs a model", "add --model anthropic/NAME, or --replay RECORDING"
+        )
     from irsim_evals.harness.run import run_arm
 
-    return run_arm(arm, instances, progress=report, **options)
+    return run_arm(sides, instances, progress=report, **options)

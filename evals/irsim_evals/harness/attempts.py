@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -181,14 +181,21 @@ def _cost_of(sample: Any, work: Work | None) -> Cost:
         output_tokens=total("output_tokens"),
         cache_tokens=total("input_tokens_cache_write", "input_tokens_cache_read"),
         dollars=None if not paid or None in paid else round(sum(paid), 6),
-        steps=[_step(message) for message in sample.messages if message.role == "tool"],
+        steps=_steps(sample.messages),
     )
 
 
-def _step(message: Any) -> Step:
-    """One call of a tool, by its answer."""
-    text = message.error.message if message.error is not None else str(message.text)
-    return Step(tool=message.function or "", error=message.error is not None, codes=error_codes(text))
+def _steps(messages: Sequence[Any]) -> list[Step]:
+    """The calls of tools that were answered; those of the command line have the name of the command."""
+    given = {call.id: call for message in messages for call in getattr(message, "tool_calls", None) or []}
+    steps = []
+    for message in (one for one in messages if one.role == "tool"):
+        call, tool = given.get(message.tool_call_id), message.function or ""
+        if tool == "irsim" and call is not None:
+            words = str(call.arguments.get("command", "")).removeprefix("irsim ").split()
+            tool = " ".join(["irsim", *words[:1]])
+        steps.append(Step(tool=tool, error=message.error is not None, codes=error_codes(_said_by(message))))
+    return steps
 
 
 def replayed_model(attempt: Attempt, model: str, folder: Path) -> Any:

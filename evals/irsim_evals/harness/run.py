@@ -1,4 +1,4 @@
-"""Run one arm: a model, or a recording of one, answers the cases.
+"""Run one arm, or two in turn: a model, or a recording of one, answers the cases.
 
 The logs of inspect_ai stay in the folder ``log_dir``, each with a recording beside it (``.jsonl``), which can be
 replayed without network.
@@ -14,9 +14,10 @@ from importlib import import_module, metadata
 from pathlib import Path
 from typing import Any, Literal
 
+from irsim.bundled.skills import find_skills
 from irsim.diagnostics.errors import ArgumentError, IrsimError
 from irsim_evals.cases.store import PUBLISHED, Instance, Store, cases_hash
-from irsim_evals.harness.arms import MODEL_ARMS
+from irsim_evals.harness.arms import MODEL_ARMS, Side, skills_hash
 from irsim_evals.harness.prices import Price, set_price
 from irsim_evals.harness.recording import (
     Attempt,
@@ -50,7 +51,7 @@ class RunError(IrsimError):
 
 
 def run_arm(
-    arm: str,
+    arm: str | Sequence[Side],
     instances: Sequence[Instance],
     *,
     model: str | None,
@@ -70,7 +71,8 @@ def run_arm(
     """Let a model answer instances of cases, and grade what it leaves.
 
     Args:
-        arm: One of ``MODEL_ARMS``.
+        arm: One of ``MODEL_ARMS``; or sides, which answer each case one right after the other, so that what changes at
+            the model's service meanwhile affects them alike.
         instances: The cases to answer.
         model: Name with its provider, such as ``anthropic/claude-opus-5``; with ``replay`` the recording's.
         epochs: Attempts at each instance.
@@ -97,30 +99,41 @@ def run_arm(
         ArgumentError: The arm, the recording or the model cannot be used; something is missing.
         RunError: No attempt could be made.
     """
-    _check(arm, instances, epochs)
-    recording = find_recording(replay, arm) if replay is not None else None
-    if recording is not None:
+    sides = [Side(arm)] if isinstance(arm, str) else list(arm)
+    _check(sides, instances, epochs)
+    recordings = [] if replay is None else [find_recording(replay, side.label) for side in sides]
+    if recordings:
         if replay_mode == "grade":
-            return grade_recording(recording, instances)
-        model, base_url, price = recording.header.model, None, None
-        epochs = max(len(attempts) for _, attempts in matched(recording, instances))
+            return [trial for recording in recordings for trial in grade_recording(recording, instances)]
+        model, base_url, price = recordings[0].header.model, None, None
+        epochs = max(len(attempts) for one in recordings for _, attempts in matched(one, instances))
         token_limit = cost_limit = time_limit = message_limit = None
     _require_harness()
     if model is None:
-        raise ArgumentError(f"the arm {arm} needs a model", "give one such as anthropic/claude-opus-5")
-    if recording is None:
+        raise ArgumentError(f"the arm {sides[0].label} needs a model", "give one such as anthropic/claude-opus-5")
+    if not recordings:
         _require_key(model)
         set_price(model, price, needed=cost_limit is not None)
     seconds = math.ceil(time_limit) if time_limit is not None else None
     limits = {
         "token_limit": token_limit, "cost_limit": cost_limit, "time_limit": seconds, "message_limit": message_limit,
     }  # fmt: skip
-    return _evaluate(arm, instances, model, epochs, limits, log_dir, recording, base_url, progress, store)
+    return _evaluate(sides, instances, model, epochs, limits, log_dir, recordings, base_url, progress, store)
 
 
-def _check(arm: str, instances: Sequence[Instance], epochs: int) -> None:
-    if arm not in MODEL_ARMS:
-        raise ArgumentError(f"no model answers in the arm {arm!r}", f"choose one of {', '.join(MODEL_ARMS)}")
+def _check(sides: Sequence[Side], instances: Sequence[Instance], epochs: int) -> None:
+    for side in sides:
+        if side.arm not in MODEL_ARMS:
+            raise ArgumentError(f"no model answers in the arm {side.arm!r}", f"choose one of {', '.join(MODEL_ARMS)}")
+        if side.skills is not None and not (side.arm.startswith("skill") and find_skills(place=side.skills)):
+            why = f"{side.skills} holds no skill that the arm {side.arm} would read"
+            raise ArgumentError(why, "give a folder with NAME/SKILL.md, and an arm with skills")
+        if side.instructions is not None and "+mcp" not in side.arm:
+            raise ArgumentError(f"the arm {side.arm} reads no instructions of the server", "choose one with mcp")
+    if len({side.label for side in sides}) < len(sides):
+        raise ArgumentError(
+            f"both sides are {sides[0].label}", "give one of them another arm, --skills or --instructions"
+        )
     if not instances:
         raise ArgumentError("there is no case to answer", "choose some; irsim-evals cases lists them")
     if epochs < 1:
@@ -146,13 +159,13 @@ def _require_key(model: str) -> None:
 
 
 def _evaluate(
-    arm: str,
+    sides: Sequence[Side],
     instances: Sequence[Instance],
     model: str,
     epochs: int,
     limits: dict[str, Any],
     log_dir: Path,
-    recording: Recording | None,
+    recordings: Sequence[Recording],
     base_url: str | None,
     progress: Callable[[int, int], None] | None,
     store: Store,
@@ -160,47 +173,59 @@ def _evaluate(
     from irsim_evals.harness.attempts import attempt_of, drift_of, replayed_model, trial_from, unfinished
     from irsim_evals.harness.task import Session, build_task, by_name
 
-    session = Session(arm, by_name(instances), len(instances) * epochs, progress)
+    samples = {
+        name if len(sides) == 1 else f"{name} {side.label}": (side, instance)
+        for name, instance in by_name(instances).items()
+        for side in sides
+    }
+    session = Session(
+        {name: side for name, (side, _) in samples.items()},
+        {name: instance for name, (_, instance) in samples.items()},
+        len(samples) * epochs,
+        progress,
+    )
     recorded: dict[tuple[str, int], Attempt] = {}
-    if recording is not None:
-        for name, instance in session.instances.items():
-            for number, attempt in enumerate(recording.find(instance.case.id, instance.name), 1):
+    if recordings:
+        of_side = dict(zip(sides, recordings, strict=True))
+        for name, (side, instance) in samples.items():
+            for number, attempt in enumerate(of_side[side].find(instance.case.id, instance.name), 1):
                 recorded[name, number] = attempt
         session.model_of = lambda name, number, folder: replayed_model(recorded[name, number], model, folder)
     try:
-        log, place = _eval(
-            build_task(session, epochs), model, base_url, limits, log_dir, replayed=recording is not None
-        )
+        log, place = _eval(build_task(session, epochs), model, base_url, limits, log_dir, replayed=bool(recordings))
     finally:
         session.close()
-    samples = {(str(sample.id), sample.epoch): sample for sample in log.samples or []}
-    trials, attempts = [], []
-    for name, instance in session.instances.items():
+    done = {(str(sample.id), sample.epoch): sample for sample in log.samples or []}
+    trials: dict[Side, list[Trial]] = {side: [] for side in sides}
+    attempts: dict[Side, list[Attempt]] = {side: [] for side in sides}
+    for name, (side, instance) in samples.items():
         for number in range(1, epochs + 1):
-            if recording is not None and (name, number) not in recorded:
+            if recordings and (name, number) not in recorded:
                 continue
-            sample = samples.get((name, number))
+            sample = done.get((name, number))
             if sample is None:
-                trials.append(unfinished(instance, arm, number, model, "the evaluation ended before this attempt"))
+                why = "the evaluation ended before this attempt"
+                trials[side].append(unfinished(instance, side.label, number, model, why))
                 continue
-            attempt = attempt_of(sample, arm, instance, session.works.get((name, number)))
+            attempt = attempt_of(sample, side.label, instance, session.works.get((name, number)))
             if log.status == "cancelled" and attempt.failed:
                 continue
             trial = trial_from(attempt, sample, instance, model)
-            if recording is not None:
+            if recordings:
                 trial.drift = drift_of(recorded[name, number], attempt)
-            attempts.append(attempt)
-            trials.append(trial)
-    if recording is None:
+            attempts[side].append(attempt)
+            trials[side].append(trial)
+    for number, side in enumerate([] if recordings else sides, 1):
         header = Header(
-            arm=arm, model=model, date=datetime.now(timezone.utc).isoformat(timespec="seconds"), sdk=_versions(),
-            skills=_skills(arm), cases=cases_hash(store),
+            arm=side.label, model=model, date=datetime.now(timezone.utc).isoformat(timespec="seconds"), sdk=_versions(),
+            skills=skills_hash(side.skills) if side.arm.startswith("skill") else "", cases=cases_hash(store),
             sampling={name: value for name, value in limits.items() if value},
         )  # fmt: skip
-        write_recording(Recording(header=header, attempts=attempts), place.with_suffix(".jsonl"))
+        file = place.with_suffix(".jsonl") if len(sides) == 1 else place.with_name(f"{place.stem}-{number}.jsonl")
+        write_recording(Recording(header=header, attempts=attempts[side]), file)
     if log.status == "cancelled":
         raise KeyboardInterrupt
-    return trials
+    return [trial for side in sides for trial in trials[side]]
 
 
 def _eval(task: Any, model: str, base_url: str | None, limits: dict[str, Any], log_dir: Path, *, replayed: bool) -> Any:
@@ -236,9 +261,3 @@ def _eval(task: Any, model: str, base_url: str | None, limits: dict[str, Any], l
 
 def _versions() -> dict[str, str]:
     return {name: metadata.version(name) for name in ("inspect_ai", "anthropic")}
-
-
-def _skills(arm: str) -> str:
-    from irsim_evals.harness.arms import skills_hash
-
-    return skills_hash() if arm.startswith("skill") else ""

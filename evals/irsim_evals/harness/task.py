@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import re
 import shutil
 import sys
 import tempfile
@@ -26,11 +27,22 @@ from irsim_evals.cases.store import Instance, given_pictures, write_given
 from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.grader.outcome import Verdict, name_of
-from irsim_evals.harness.arms import briefing, skill_folders
+from irsim_evals.harness.arms import Side, briefing, skill_folders
+from irsim_evals.harness.command import run_command
 from irsim_evals.harness.folder import Folder, FolderError
 from irsim_evals.harness.recording import RecordingEnds
 
-__all__ = ["SCORER", "Session", "Work", "build_task", "by_name", "file_tools", "picture_url", "server_tools"]
+__all__ = [
+    "SCORER",
+    "Session",
+    "Work",
+    "build_task",
+    "by_name",
+    "command_tools",
+    "file_tools",
+    "picture_url",
+    "server_tools",
+]
 
 SCORER = "verdict"
 """Name of the score in the logs."""
@@ -63,11 +75,11 @@ class Work:
 
 @dataclass
 class Session:
-    """One run of an arm.
+    """One run of an arm, or of two in turn.
 
     Attributes:
-        arm: Name of the arm.
-        instances: Name of an instance → the instance.
+        sides: Name of a sample → the arm that answers, and its texts.
+        instances: Name of a sample → the instance.
         total: Number of attempts.
         progress: Called after each attempt with the number of finished attempts, and of all.
         model_of: Model for an instance, the number of an attempt and its folder; None for the evaluation's.
@@ -75,7 +87,7 @@ class Session:
         done: Number of attempts that are done.
     """
 
-    arm: str
+    sides: dict[str, Side]
     instances: dict[str, Instance]
     total: int
     progress: Callable[[int, int], None] | None = None
@@ -112,15 +124,16 @@ def build_task(session: Session, epochs: int) -> Any:
     async def cleanup(state: Any) -> None:
         session.end(str(state.sample_id), state.epoch)
 
+    arms = list(dict.fromkeys(side.label for side in session.sides.values()))
     return Task(
-        name=session.arm.replace("+", "-"),
+        name=re.sub(r"[^\w-]+", "-", "-or-".join(arms)),
         dataset=MemoryDataset([_sample(name, instance) for name, instance in session.instances.items()]),
         solver=_agent(session),
         scorer=_scorer(session),
         cleanup=cleanup,
         epochs=Epochs(epochs, ["mean", *([f"pass_k_{epochs}"] if epochs > 1 else [])]),
         fail_on_error=False,
-        metadata={"arm": session.arm},
+        metadata={"arms": arms},
     )
 
 
@@ -143,9 +156,10 @@ def _agent(session: Session) -> Any:
             name, number = str(state.sample_id), state.epoch
             work = session.begin(name, number)
             model = session.model_of(name, number, work.folder) if session.model_of is not None else None
-            folder = Folder(work.folder, skill_folders(session.arm))
-            tools = [*file_tools(folder), *server_tools(session.arm, work.folder)]
-            system = ChatMessageSystem(content=briefing(session.arm, work.folder))
+            side = session.sides[name]
+            folder = Folder(work.folder, skill_folders(side))
+            tools = [*file_tools(folder), *command_tools(side.arm, work.folder), *server_tools(side.arm, work.folder)]
+            system = ChatMessageSystem(content=briefing(side, work.folder))
             conversation = AgentState(messages=[system, *state.messages])
             begin = time.perf_counter()
             try:
@@ -244,6 +258,21 @@ def file_tools(folder: Folder) -> list[Any]:
         ),
         ToolDef(list_files, "list_files", "List the files below a folder.", {"path": "Folder; the default is yours."}),
     ]  # fmt: skip
+
+
+def command_tools(arm: str, folder: Path) -> list[Any]:
+    """The command line of irsim, where the arm has it."""
+
+    async def irsim(command: str) -> str:
+        try:
+            return await anyio.to_thread.run_sync(run_command, folder, command)
+        except FolderError as error:
+            raise ToolError(str(error)) from None
+
+    line = {"command": "The line, such as irsim validate scenario.yaml."}
+    return [
+        ToolDef(irsim, "irsim", "Run a command of irsim in your folder; --help explains.", line, parallel=False)
+    ] * ("+cli" in arm)
 
 
 def server_tools(arm: str, folder: Path) -> list[Any]:

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from irsim_evals.cases.store import Instance, case_of, golds_of
+from irsim_evals.harness.arms import Side
 from irsim_evals.harness.run import run_arm
 from irsim_evals.results import Trial
 from tests.evals.conftest import made_up
@@ -88,7 +89,9 @@ def connections_of_others(request: pytest.FixtureRequest) -> Iterator[None]:
             gc.collect()
 
 
-def run(instances: list[Instance], api: MessagesApi, folder: Path, arm: str = "no-skill", **more: Any) -> list[Trial]:
+def run(
+    instances: list[Instance], api: MessagesApi, folder: Path, arm: str | list[Side] = "no-skill", **more: Any
+) -> list[Trial]:
     """Let the stand-in answer in an arm."""
     return run_arm(arm, instances, log_dir=folder, base_url=api.url, **{"model": MODEL, **more})
 

@@ -14,8 +14,9 @@ import pytest
 
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.store import Instance, case_of
-from irsim_evals.harness.arms import MODEL_ARMS
-from irsim_evals.harness.run import RunError
+from irsim_evals.harness.arms import MODEL_ARMS, Side
+from irsim_evals.harness.run import RunError, run_arm
+from irsim_evals.report.comparison import compare
 from irsim_evals.results import Trial
 from tests.evals.harness.conftest import KEY, MODEL, Guard, run
 from tests.evals.harness.messages_api import Fault, MessagesApi, Reply, follow, results_in, said, turn_of
@@ -311,3 +312,42 @@ def test_epochs_are_attempts_of_their_own_and_progress_is_reported(
     values = {score.reducer: score.metrics["accuracy"].value for score in log.results.scores}
     assert values["mean"] == pytest.approx(2 / 3)
     assert values["pass_k_3"] == 0
+
+
+def test_two_sides_answer_each_case_one_after_the_other(
+    empty_world: Instance, scenario: str, writes: tuple[str, dict[str, Any]], service: MessagesApi, tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.setattr("irsim_evals.harness.run.MAX_PARALLEL", 1)
+    skill = tmp_path / "new" / "short" / "SKILL.md"
+    skill.parent.mkdir(parents=True)
+    skill.write_text("---\nname: short\ndescription: All that matters.\n---\n")
+    check = [writes, ("irsim", {"command": "irsim validate scenario.yaml"}), ("irsim", {"command": "rm -r ."})]
+
+    def script(body: dict[str, Any]) -> Reply:
+        has = "irsim" in offered(body)
+        return Reply("Done.") if turn_of(body) else Reply("", check if has else [writes])
+
+    service.script = script
+    sides = [Side("skill+cli"), Side("no-skill")]
+    trials = run([empty_world, case_of("pub-02")], service, tmp_path / "logs", sides)
+    asked = ["irsim" in offered(body) for body in service.requests if not turn_of(body)]
+    assert asked == [True, False] * 2
+    assert [(trial.arm, trial.verdict.case) for trial in trials] == [
+        ("skill+cli", "pub-01"), ("skill+cli", "pub-02"), ("no-skill", "pub-01"), ("no-skill", "pub-02"),
+    ]  # fmt: skip
+    assert [step.tool for step in trials[0].verdict.cost.steps] == ["write_file", "irsim validate", "irsim rm"]
+    assert [step.error for step in trials[0].verdict.cost.steps] == [False, False, True]
+    sentences = compare(trials[:2], trials[2:], "cli", "none").sentences
+    assert sentences[1].startswith(
+        "No difference in calls that chance would not explain (95 %: -2.0 to -2.0 a case; 3.0"
+    )
+
+    again = run_arm(sides, [empty_world], model=None, log_dir=tmp_path / "again", replay=tmp_path / "logs")
+    assert [(trial.arm, trial.verdict.strict, trial.drift) for trial in again] == [
+        ("skill+cli", True, []), ("no-skill", True, []),
+    ]  # fmt: skip
+    service.requests.clear()
+    (one,) = run([empty_world], service, tmp_path / "third", [Side("skill", tmp_path / "new")])
+    assert "short (skills/short/SKILL.md): All that matters." in system(service.requests[0])
+    assert one.arm == "skill@new"

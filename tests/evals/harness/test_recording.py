@@ -12,7 +12,8 @@ from mcp.types import TextContent
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.store import case_of, golds_of
 from irsim_evals.grader.outcome import Cost
-from irsim_evals.harness.arms import MODEL_ARMS, briefing, skill_folders
+from irsim_evals.harness.arms import MODEL_ARMS, Side, briefing, skill_folders, skills_hash
+from irsim_evals.harness.command import run_command
 from irsim_evals.harness.distractors import build_office
 from irsim_evals.harness.folder import Folder, FolderError
 from irsim_evals.harness.prices import known_price
@@ -28,6 +29,7 @@ from irsim_evals.harness.recording import (
     write_recording,
 )
 from irsim_evals.harness.run import run_arm
+from tests.evals.conftest import irsim_evals, refusal
 
 
 @pytest.fixture
@@ -180,13 +182,79 @@ def test_a_folder_reads_in_parts_and_lists_what_is_there(tmp_path: Path) -> None
 
 
 def test_each_arm_is_told_what_it_has(tmp_path: Path) -> None:
-    told = {arm: briefing(arm, tmp_path) for arm in MODEL_ARMS}
-    assert ["SKILL.md" in text for text in told.values()] == [False, True, True, True]
-    assert ["edit the YAML -> validate_scenario" in text for text in told.values()] == [False, False, True, True]
+    told = {arm: briefing(Side(arm), tmp_path) for arm in MODEL_ARMS}
+    assert ["SKILL.md" in text for text in told.values()] == [False, True, True, True, True]
+    assert ["edit the YAML -> validate_scenario" in text for text in told.values()] == [False] * 3 + [True, True]
+    assert ["You have no shell" in text for text in told.values()] == [True, True, False, True, True]
     assert told["skill+mcp"] == told["skill+mcp+distractors"]
-    assert skill_folders("no-skill") == {}
+    assert skill_folders(Side("no-skill")) == {}
     for arm in MODEL_ARMS[1:]:
-        assert all((place / "SKILL.md").is_file() for place in skill_folders(arm).values())
+        assert all((place / "SKILL.md").is_file() for place in skill_folders(Side(arm)).values())
+
+
+@pytest.fixture
+def other_texts(tmp_path: Path) -> tuple[Path, Path]:
+    """A folder with another skill, and other instructions of the server."""
+    skill, said = tmp_path / "new" / "short" / "SKILL.md", tmp_path / "said.md"
+    skill.parent.mkdir(parents=True)
+    skill.write_text("---\nname: short\ndescription: All that matters.\n---\n# Short\n")
+    said.write_text("Validate once.\n")
+    return skill.parent.parent, said
+
+
+def test_other_texts_take_the_place_of_the_installed_ones(other_texts: tuple[Path, Path], tmp_path: Path) -> None:
+    side = Side("skill+mcp", *other_texts)
+    text = briefing(side, tmp_path)
+    assert side.label == "skill+mcp@new@said"
+    assert "- short (skills/short/SKILL.md): All that matters." in text
+    assert text.endswith("The MCP server irsim says:\nValidate once.\n")
+    assert "irsim-scenario" not in text
+    assert list(skill_folders(side)) == ["skills/short"]
+    assert skills_hash(other_texts[0]) != skills_hash()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--arm", "skill", "--against", "skill"], "both sides are skill"),
+        (["--arm", "no-skill", "--against", "no-skill", "--skills", "new"], "holds no skill that the arm no-skill"),
+        (["--arm", "skill", "--skills", "new/short"], "holds no skill that the arm skill would read"),
+        (["--arm", "skill", "--instructions", "said.md"], "reads no instructions"),
+        (["--arm", "baselines", "--against", "skill"], "one arm with one other"),
+        (["--arm", "skill", "--against", "skil"], "did you mean skill"),
+    ],
+)
+def test_sides_that_cannot_be_compared_are_refused(
+    words: list[str], message: str, other_texts: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(other_texts[1].parent)
+    assert message in refusal("run", *words, "pub-01", "--model", "anthropic/x")
+
+
+def test_two_baselines_are_compared_at_once(tmp_path: Path) -> None:
+    done = irsim_evals("run", "--arm", "null", "--against", "retrieval", "pub-01", "pub-02", "--output", tmp_path)
+    assert done.exit_code == 0, done.output
+    assert "retrieval passes 0 of 2 cases and null 0" in done.output
+
+
+def test_the_command_line_of_an_agent_is_irsim_in_its_folder(tmp_path: Path, scenario: str) -> None:
+    folder = tmp_path / "work"
+    folder.mkdir()
+    (folder / "a.yaml").write_text(scenario)
+    assert "valid: 1 robot" in run_command(folder, "irsim validate a.yaml")
+    for line, message in [
+        ("irsim validate b.yaml", r"b\.yaml[^$]*\[exit code 2\]$"),
+        ("rm a.yaml", "the commands are irsim templates"),
+        ("irsim run a.yaml; ls", r"unexpected extra argument"),
+        ("irsim run ../a.yaml", "only files of your folder"),
+        ("irsim render a.yaml -o/tmp/x.png", "only files of your folder"),
+        ("irsim run a.yaml --policy x.py:drive", "no programs"),
+        ("irsim run a.yaml --import=antigravity", "no programs"),
+        ('irsim run "a.yaml', "is not a command line"),
+    ]:
+        with pytest.raises(FolderError, match=message):
+            run_command(folder, line)
+    assert [path.name for path in folder.iterdir()] == ["a.yaml"]
 
 
 @pytest.mark.anyio
