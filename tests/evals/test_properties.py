@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from irsim.options.registry import BEHAVIORS, KINEMATICS
+from irsim_evals.grader.matching import Match, matches
 from irsim_evals.grader.predicates.bodies import parameter
 from irsim_evals.grader.properties import value_of
-from tests.evals.conftest import ROOT, world
+from tests.evals.conftest import ROOT, graded, made_up, world
 
 CAR = "kinematics: {name: acker, wheelbase: 1%s}, vel_max: [1, %s], vel_min: [-1, %s]"
 PAIR = "{kinematics: {name: diff}, state: [%s, 5, 0], goal: [5, 9, 0], behavior: %s}"
@@ -98,6 +100,63 @@ def test_a_sensor_is_what_it_measures(keys: str, name: str, value: Any) -> None:
     scene = world(f"robot: {{kinematics: {{name: diff}}, sensors: [{{name: lidar2d, {keys}}}]}}").scene(0)
     [sensor] = scene.bodies[0].sensors
     assert parameter(sensor, name) == pytest.approx(value)
+
+
+HALL = """
+world: {width: 10, height: 6}
+robot:
+  - {kinematics: {name: diff}, shape: {name: rectangle, length: 0.9, width: 0.6}, state: [2, 3, 0], goal: [8, 3]}
+  - {kinematics: {name: diff}, shape: {name: rectangle, length: 0.9, width: %s}, state: [2, 1, 0], goal: [8, 1]}
+obstacle:
+  - {shape: {name: rectangle, length: 0.2, width: 2.6}, state: [5, 1.3, 0]}
+  - {shape: {name: rectangle, length: 0.2, width: 2.6}, state: [5, 4.7, 0]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("width", "limit", "passes"),
+    [
+        (0.6, {"ge": "= robots.width + 0.1"}, True),
+        (0.6, {"ge": "= robots.width + 0.3"}, False),
+        (0.75, {"ge": "= robots.width + 0.1"}, False),  # it holds for each of them, the wider one too
+        (0.75, {"le": "= robots.width + 0.1"}, False),  # the narrower one too
+        (0.6, "= robots.width + 0.2", True),
+        (0.75, "= robots.width + 0.2", False),  # two widths are no single value
+        (0.6, {"eq": "= world.width / 10 - 0.2", "tol": 0.001}, True),
+        (0.6, {"ge": "= statics.radius"}, False),  # rectangles have none
+    ],
+)
+def test_a_measured_value_may_depend_on_the_answer(width: float, limit: Any, passes: bool) -> None:
+    case = made_up({"id": "gap", "spacing": {"of": "obstacles", "what": "footprint", "distance": limit}})
+    assert graded(case, HALL % width).strict == passes
+
+
+@pytest.mark.parametrize(
+    ("relation", "problem"),
+    [
+        ("= robots.widht", "there is no property 'widht'; write width"),
+        ("= robot.width", "there is no selection 'robot'; write robots"),
+        ("= world.widht", "there is no property of the world 'widht'; write width"),
+        ("= 2 + 3", "names no property"),
+        ("= robots.width.real", "cannot contain"),
+        ("= __import__(robots.width)", "cannot contain"),
+    ],
+)
+def test_a_relation_that_means_nothing_is_refused_when_the_case_is_read(relation: str, problem: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(problem)):
+        made_up({"id": "gap", "count": {"of": "obstacles", "number": {"ge": relation}}})
+
+
+def test_a_file_has_no_world_to_relate_to() -> None:
+    with pytest.raises(ValueError, match="no world"):
+        made_up({"id": "many", "files": {"pattern": "*", "number": {"ge": "= robots.width"}}})
+
+
+@pytest.mark.parametrize(("value", "accepted"), [(0.0, True), (None, True), (1.0, False)])
+def test_no_value_may_be_as_good_as_zero(value: float | None, accepted: bool) -> None:
+    match = Match.model_validate({"eq": 0, "or_none": True})
+    assert matches(match, value, "speed") == accepted
+    assert match.words() == "0 or none"
 
 
 REGISTERED = {name for registry in (BEHAVIORS, KINEMATICS) for name in registry.names()} - {"static"}

@@ -17,6 +17,7 @@ from irsim.common.json_output import schema_of_file
 from irsim_evals.cases.drawing import PICTURES, Drawing, Record
 from irsim_evals.grader.matching import Quantity, Seeds
 from irsim_evals.grader.predicates._base import Predicate, registered
+from irsim_evals.grader.relations import unknown_words
 from irsim_evals.grader.selection import Selector
 
 __all__ = [
@@ -215,6 +216,13 @@ class Case(Record):
         twice = {name for name in names if names.count(name) > 1}
         if twice:
             raise ValueError(f"ids of assertions occur twice: {', '.join(sorted(twice))}")
+        return self
+
+    @model_validator(mode="after")
+    def _related(self) -> Case:
+        for item in [*self.check, *(a for plan in self.episodes for a in plan.check)]:
+            for problem in unknown_words(item.predicate, self.select):
+                raise ValueError(f"{item.id}: {problem}")
         return self
 
 

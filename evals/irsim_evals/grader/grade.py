@@ -23,6 +23,7 @@ from irsim_evals.grader.material import Material, with_speeds
 from irsim_evals.grader.outcome import NOT_REACHED, STAGES, Outcome, Stage, Verdict
 from irsim_evals.grader.predicates._base import Observation
 from irsim_evals.grader.programs import problems_in
+from irsim_evals.grader.relations import related
 from irsim_evals.grader.sanity import check_goals, check_moves, check_scene, latest_start
 
 __all__ = ["failed_verdict", "grade"]
@@ -238,7 +239,7 @@ def _in_scene(material: Material, item: Any, seed: int) -> Any:
         about = material.other(item.file)
         scene = about.scene(seed)
         world = at_start(scene) if item.predicate.subject == "episode" else scene
-        observation: Observation = item.predicate.observe(about, world)
+        observation: Observation = related(item.predicate, about, scene).observe(about, world)
         observation.seed = seed if observation.seed is None else observation.seed
         return observation
 
@@ -252,7 +253,11 @@ def _episodes(plan: Any, material: Material, outcomes: list[Outcome], whole: boo
     for seed in plan.seeds:
         run = _runs(plan, material, seed, watched)
         for item in plan.check:
-            look = _guarded(lambda item=item, run=run: item.predicate.observe(material, run(item.predicate.exact)))
+            look = _guarded(
+                lambda item=item, run=run, seed=seed: related(item.predicate, material, material.scene(seed)).observe(
+                    material, run(item.predicate.exact)
+                )
+            )
             look.seed = seed if look.seed is None else look.seed
             seen[item.id].append(look)
             if not (look.passed or item.soft or whole) and plan.share == 1:

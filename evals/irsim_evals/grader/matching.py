@@ -5,14 +5,28 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WrapValidator, model_validator
 
+from irsim.bundled.templates.fill import evaluate
 from irsim.common.angles import wrap
 from irsim.common.arguments import is_number
 
-__all__ = ["TOLERANCES", "UNITS", "Counted", "Kind", "Match", "Quantity", "Seeds", "matches", "quantity", "show"]
+__all__ = [
+    "TOLERANCES",
+    "UNITS",
+    "Counted",
+    "Kind",
+    "Match",
+    "Quantity",
+    "Relation",
+    "Seeds",
+    "matches",
+    "quantity",
+    "show",
+]
 
 UNITS: dict[str, float] = {
     "m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": 0.3048, "in": 0.0254, "yd": 0.9144,
@@ -71,11 +85,69 @@ Seeds = Annotated[list[Annotated[int, Field(ge=0, lt=2**53)]], Field(max_length=
 """Seeds of episodes or worlds."""
 
 
+_REFERENCE = re.compile(r"\b([A-Za-z_]\w*)\.([a-z_]\w*)")
+
+
+@dataclass(frozen=True)
+class Relation:
+    """A number that depends on the answer, such as ``= robots.width + 0.1``.
+
+    Attributes:
+        text: As written.
+    """
+
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+    @property
+    def references(self) -> list[tuple[str, str]]:
+        """Selection, or ``world``, and property of each value in it."""
+        return _REFERENCE.findall(self.text)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of these values in the expression."""
+        return [f"value_{number}" for number, _ in enumerate(self.references)]
+
+    @property
+    def expression(self) -> str:
+        """The expression over them."""
+        names = iter(self.names)
+        return _REFERENCE.sub(lambda _: next(names), self.text.removeprefix("=").strip())
+
+
+def _relation(value: Any) -> Relation | None:
+    """The relation that a text is.
+
+    Raises:
+        ValueError: It is none, although it begins like one.
+    """
+    if not isinstance(value, str) or not value.lstrip().startswith("="):
+        return None
+    relation = Relation(value.strip())
+    if not relation.references:
+        raise ValueError(f"{value!r} names no property, as `= robots.width + 0.1` does")
+    evaluate(relation.expression, dict.fromkeys(relation.names, 1.0))
+    return relation
+
+
+def _limit(value: Any, number: Any) -> Any:
+    return _relation(value) or number(value)
+
+
+Limit = Annotated[Quantity, WrapValidator(_limit)]
+"""A quantity, or a relation."""
+
+
 def _value(value: Any) -> Any:
     """A text that is a quantity as its number; lists element by element; anything else as it is."""
     if isinstance(value, list):
         return [_value(item) for item in value]
     if isinstance(value, str):
+        if relation := _relation(value):
+            return relation
         try:
             return quantity(value)
         except ValueError:
@@ -89,7 +161,10 @@ _LIMITS = {"minimum": -MAX_QUANTITY, "maximum": MAX_QUANTITY}
 
 
 class Match(BaseModel):
-    """Accepted values: one of the keys, or several that must all hold. A bare value stands for ``eq``."""
+    """Accepted values: one of the keys, or several that must all hold. A bare value stands for ``eq``.
+
+    A number may be a relation, ``= 2 * robots.width + 0.1``: an expression over properties of selections and of the
+    ``world``. Where bodies of a selection differ, `ge` and `le` hold for each of them."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
@@ -101,14 +176,22 @@ class Match(BaseModel):
     """Equal to one of these."""
     unlike: Annotated[list[Any] | None, BeforeValidator(_value), Field(alias="not")] = None
     """Equal to none of these."""
-    ge: Quantity | None = None
+    ge: Limit | None = None
     """At least."""
-    le: Quantity | None = None
+    le: Limit | None = None
     """At most."""
     tol: Quantity | None = None
     """Absolute tolerance of `eq` and `in`, instead of the kind's."""
     given: bool | None = None
     """Whether there is a value at all."""
+    or_none: bool = False
+    """Whether no value is accepted besides, as in "0 or none": ``{eq: 0, or_none: true}``."""
+
+    def relations(self) -> dict[str, Relation]:
+        """Key → the relation under it."""
+        return {
+            name: value for name in ("eq", "about", "ge", "le") if isinstance(value := getattr(self, name), Relation)
+        }
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> Any:
@@ -123,7 +206,7 @@ class Match(BaseModel):
 
     @model_validator(mode="after")
     def _says_something(self) -> Match:
-        if not self.model_fields_set - {"tol"}:
+        if not self.model_fields_set - {"tol", "or_none"}:
             raise ValueError("say which values are accepted: eq, about, in, not, ge, le or given")
         return self
 
@@ -146,11 +229,14 @@ class Match(BaseModel):
             parts.append(f"at most {show(self.le)}")
         if self.given is not None:
             parts.append("any" if self.given else "none")
-        return " and ".join(parts)
+        return " and ".join(parts) + (" or none" if self.or_none else "")
 
 
 def matches(match: Match, value: Any, kind: Kind) -> bool:
-    """Whether a value is accepted. A missing value (None) is accepted only by ``given: false`` and ``eq: null``."""
+    """Whether a value is accepted. A missing value (None) is accepted only by ``given: false``, ``eq: null`` and
+    ``or_none``."""
+    if match.or_none and (value is None or value == []):
+        return True
     if match.given is not None and match.given != (value is not None and value != []):
         return False
     if match.given is False or ("eq" in match.model_fields_set and match.eq is None):

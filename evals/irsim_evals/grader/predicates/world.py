@@ -70,14 +70,15 @@ class World(ScenePredicate):
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Compare them."""
-        values = {name: _value(scene, name) for name in self.has}
+        values = {name: world_value(scene, name) for name in self.has}
         off = [name for name, match in self.has.items() if not matches(match, values[name], WORLD_KINDS[name])]
         expected = ", ".join(f"{name} {match.words()}" for name, match in self.has.items())
         observed = ", ".join(f"{name} {show(value)}" for name, value in values.items())
         return Observation(not off, expected, observed, f"world.{_KEYS.get(off[0], off[0])}" if off else None)
 
 
-def _value(scene: GradedScene, name: str) -> Any:
+def world_value(scene: GradedScene, name: str) -> Any:
+    """The value of a property of the world."""
     world = scene.world
     if name in _EDGES:
         return scene.bounds[_EDGES.index(name)]
