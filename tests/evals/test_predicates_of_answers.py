@@ -309,3 +309,29 @@ def test_the_first_of_two_replies_asks_or_says_what_it_took_to_be_meant() -> Non
         ("OK, it is 30 % bigger now.", False),
     ):
         assert grade(instance, replace(answer, replies=(reply, answer.reply))).strict == passes
+
+
+@pytest.mark.parametrize(
+    ("new", "only", "observed"),
+    [
+        ("vel_max: [2, 1]", ["robot[0].vel_max[0]"], ""),
+        ("vel_max: [2, 1.5]", ["robot[0].vel_max[0]"], "robot[0].vel_max[1] differs, too"),
+        ("vel_max: [2, 1.5]", ["robot[0].vel_max[*]"], ""),
+        ("vel_max: [2, 1.5]", ["robot[0].vel_max"], ""),
+        ("vel_max: [1, 1, 1]", ["robot[0].vel_max[0]"], "robot[0].vel_max differs, too"),
+        ("vel_max: [1, 1], waypoints: [[5, 2], [6, 9]]", ["robot[0].waypoints[1][1]"], ""),
+        (
+            "vel_max: [1, 1], waypoints: [[4, 2], [6, 9]]",
+            ["robot[0].waypoints[1][1]"],
+            "robot[0].waypoints[0][0] differs, too",
+        ),
+    ],
+)
+def test_an_edit_may_be_of_one_number_of_a_vector(new: str, only: list[str], observed: str) -> None:
+    before = "robot: {kinematics: {name: diff}, vel_max: [1, 1], waypoints: [[5, 2], [6, 6]]}\n"
+    ways = "" if "waypoints" in new else ", waypoints: [[5, 2], [6, 6]]"
+    after = f"robot: {{kinematics: {{name: diff}}, {new}{ways}}}\n"
+    material = Material(None, {}, {"scenario.yaml": after}, "scenario.yaml", {"scenario.yaml": before})
+    observation = seen(material, "edits", {"only": only})
+    assert observation.passed == (observed == "")
+    assert observed in observation.observed

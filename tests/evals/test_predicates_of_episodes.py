@@ -113,3 +113,14 @@ def test_an_episode_may_have_other_speed_limits() -> None:
     fast = episode(material, 2)
     assert slow.positions(0)[-1][0] - 1 == pytest.approx((fast.positions(0)[-1][0] - 1) / 2, abs=0.05)
     assert material.scenario.objects[0].vel_max[0] == 1
+
+
+@pytest.mark.parametrize(
+    ("behavior", "share", "passes"),
+    [("{name: dash, loop: true}", 0, True), ("{name: dash}", 0, False), ("{name: dash}", 1, True)],
+)
+def test_who_goes_round_for_ever_never_arrives_for_good(behavior: str, share: int, passes: bool) -> None:
+    robot = f"{{kinematics: {{name: omni}}, state: [1, 5], goal: [4, 5], behavior: {behavior}}}"
+    material = world(f"robot: {robot}")
+    assert seen(material, "arrive", {"of": "robots", "share": 1}, 8).passed
+    assert seen(material, "arrive", {"of": "robots", "share": share, "for_good": True}, 8).passed == passes

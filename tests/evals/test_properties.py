@@ -53,6 +53,15 @@ def test_a_steering_angle_is_what_limits_and_drive_leave(car: str, left: float |
         ("kinematics: {name: diff}, behavior: {name: dash, loop: true, wander: true}", "loop", False),
         ("kinematics: {name: diff}, static: true, behavior: {name: dash, wander: true}", "wander", False),
         ("kinematics: {name: diff}, behavior: {name: dash}, group_behavior: {name: orca}", "behavior", "orca"),
+        ("kinematics: {name: diff}, acce: [0.5, 2]", "acce", 0.5),
+        ("kinematics: {name: omni_angular}, acce: [0.5, 1, 2]", "turn_acce", 2.0),
+        ("kinematics: {name: omni}, acce: [0.5, 1]", "turn_acce", None),
+        ("kinematics: {name: diff}", "acce", None),
+        ("kinematics: {name: diff, noise: true}", "noise", True),
+        ("kinematics: {name: diff, noise: true, alpha: [0, 0, 0, 0]}", "noise", False),
+        ("kinematics: {name: diff, alpha: [1, 1, 1, 1]}", "noise", False),
+        ("kinematics: {name: diff}, fov: 2, fov_radius: 3, plot: {show_fov: true}", "show_fov", True),
+        ("kinematics: {name: diff}, plot: {show_fov: true}", "show_fov", False),
     ],
 )  # fmt: skip
 def test_a_property_is_what_the_built_world_does(keys: str, name: str, value: Any) -> None:
@@ -100,6 +109,12 @@ def test_a_sensor_is_what_it_measures(keys: str, name: str, value: Any) -> None:
     scene = world(f"robot: {{kinematics: {{name: diff}}, sensors: [{{name: lidar2d, {keys}}}]}}").scene(0)
     [sensor] = scene.bodies[0].sensors
     assert parameter(sensor, name) == pytest.approx(value)
+
+
+@pytest.mark.parametrize(("offset", "right", "top"), [("", 12.0, 8.0), (", offset: [-2, 1]", 10.0, 9.0)])
+def test_a_world_has_four_edges(offset: str, right: float, top: float) -> None:
+    case = made_up({"id": "edges", "world": {"right": {"eq": right, "tol": 0}, "top": {"eq": top, "tol": 0}}})
+    assert graded(case, f"world: {{width: 12, height: 8{offset}}}\nrobot: {{kinematics: {{name: diff}}}}").strict
 
 
 HALL = """

@@ -123,6 +123,32 @@ def _avoids(scene: GradedScene, body: GradedBody) -> bool:
     return body.avoided in roles
 
 
+def _acceleration(component: int) -> Callable[[GradedScene, GradedBody], Any]:
+    """The limit of a control's change; None without a limit, and of drives that have no such control."""
+
+    def of(_: GradedScene, body: GradedBody) -> float | None:
+        limits = body.limits["acce"]
+        if (
+            body.kinematics is None
+            or not limits
+            or (component < 0 and not getattr(body.record.kinematics, "turns", False))
+        ):
+            return None
+        return limits[component] if limits[component] < math.inf else None
+
+    return of
+
+
+def _is_noisy(_: GradedScene, body: GradedBody) -> bool | None:
+    """Noise without variances is none."""
+    drive: Any = body.record.kinematics if body.kinematics else None
+    return None if drive is None else bool(drive.noise and any(getattr(drive, "alpha", [1.0])))
+
+
+def _shows_fov(_: GradedScene, body: GradedBody) -> bool:
+    return bool(body.record.plot.show_fov and body.record.fov is not None and body.record.fov_radius is not None)
+
+
 def _wanders(_: GradedScene, body: GradedBody) -> bool:
     return body.behavior is not None and body.record.wander
 
@@ -207,10 +233,16 @@ PROPERTIES: dict[str, Property] = {
     "turn_right": Property("rate", "vel_min", _range("turn_right"), "Greatest turn rate to the right."),
     "steer_left": Property("angle", "vel_max", _range("steer_left"), "Greatest steering angle to the left."),
     "steer_right": Property("angle", "vel_min", _range("steer_right"), "Greatest steering angle to the right."),
+    "acce": Property(
+        "speed", "acce", _acceleration(0), "Greatest change of its forward speed in a second, if limited."
+    ),
+    "turn_acce": Property("rate", "acce", _acceleration(-1), "The same of its turn rate or steering angle."),
+    "noise": Property("flag", "kinematics.noise", _is_noisy, "Whether its motion is noisy; None without a drive."),
     "top_speed": Property("speed", "vel_max", lambda _, body: float(top_speed(body.record)), "Greatest speed at all."),
     "sensors": Property("count", "sensors", lambda _, body: len(body.sensors), "How many sensors it has."),
     "fov": Property("angle", "fov", lambda _, body: body.record.fov, "Angle of its field of view."),
     "fov_radius": Property("length", "fov_radius", lambda _, body: body.record.fov_radius, "Reach of its ``fov``."),
+    "show_fov": Property("flag", "plot.show_fov", _shows_fov, "Whether its field of view is drawn."),
     "color": Property("name", "color", lambda _, body: body.color, "Its color as ``#rrggbb``."),
     "hue": Property("name", "color", lambda _, body: hue_of(body.color), "Its color in a word such as ``red``."),
     "tags": Property("name", "tags", lambda _, body: list(body.record.tags), "Its tags, a list."),

@@ -19,7 +19,7 @@ FACTS = (
     "count", "role", "kinematics", "shape", "size", "position", "heading", "goal", "goal_heading", "behavior",
     "options", "forward", "backward", "sideways", "turn", "steer", "acce", "sensor_count", "sensor_kind", "range",
     "beams", "opening", "sensor_options", "color", "name", "threshold", "passable", "wheelbase", "fov", "tags",
-    "driven", "random",
+    "noise", "driven", "random",
 )  # fmt: skip
 """Kinds of facts of a body; ``driven`` is whether it has a behavior, ``random`` whether its place is drawn."""
 GROUPS = {
@@ -151,6 +151,8 @@ def _of_body(body: GradedBody, kind: str) -> Any:
         return body.passable
     if kind in GROUPS["sensors"]:
         return _of_sensors(body.sensors, kind)
+    if kind == "noise":
+        return [getattr(body.record.kinematics, key, None) for key in ("noise", "alpha")]
     if kind == "acce":
         return body.limits["acce"]
     if kind == "fov":

@@ -7,6 +7,7 @@ import re
 import shlex
 import subprocess
 import sys
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
@@ -20,7 +21,7 @@ from irsim_evals.grader.programs import problems_in, run_program
 from irsim_evals.grader.words import Regex
 
 if TYPE_CHECKING:
-    from irsim.results.validation import ScenarioDiff
+    from irsim.results.validation import KeyChange, ScenarioDiff
     from irsim_evals.grader.material import Material
 
 _MAX_SHOWN = 6
@@ -124,7 +125,8 @@ class Edits(AnswerPredicate):
     """The file that was left; default: the scenario of the answer."""
     only: list[str] | None = None
     """Paths that may change: ``robot[0].sensors[0].range_max``; what lies below one may change, too. ``*`` stands for
-    any index. A path with ``world:`` before it names a fact of the world instead of a key, as ``irsim diff`` does."""
+    any index, and ``robot[0].vel_max[1]`` is one number of a list that stays as long as it was. A path with ``world:``
+    before it names a fact of the world instead of a key, as ``irsim diff`` does."""
     must: dict[str, Match] = {}
     """Path → accepted new values."""
     lines: Match | None = None
@@ -146,7 +148,8 @@ class Edits(AnswerPredicate):
         wrong: list[str] = []
         where = None
         if self.only is not None:
-            odd = [change.path for change in diff.keys if change.change != "moved" and not self._allowed(change.path)]
+            changed_paths = [path for change in diff.keys if change.change != "moved" for path in _places(change)]
+            odd = [path for path in changed_paths if not self._allowed(path)]
             wrong += [f"{path} differs, too" for path in odd]
             where = odd[0] if odd else None
         if self.same is not None and diff.same != self.same:
@@ -196,6 +199,20 @@ def compared(before: str, after: str) -> ScenarioDiff:
     from irsim.validation.diff.compare import compare
 
     return compare(read(load_text(before), strict=False), read(load_text(after), strict=False), seed=0)
+
+
+def _places(change: KeyChange) -> Iterator[str]:
+    """The path of a change; of a list that is as long as before, or of one within it, the paths of the new items."""
+
+    def within(path: str, before: Any, after: Any) -> Iterator[str]:
+        if isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
+            for number, (old, new) in enumerate(zip(before, after, strict=True)):
+                if old != new:
+                    yield from within(f"{path}[{number}]", old, new)
+        else:
+            yield path
+
+    return within(change.path, change.before, change.after)
 
 
 def _covers(allowed: str, path: str) -> bool:

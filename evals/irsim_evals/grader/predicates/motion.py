@@ -27,6 +27,8 @@ class Arrive(OfBodies, EpisodePredicate):
     """Latest time [s]; default: the end of the episode."""
     or_near: Quantity | None = None
     """Ending at most this far from the goal [m] counts as well."""
+    for_good: bool = False
+    """Only who has no further goal counts: with a share of 0, bodies that go round or to random goals for ever."""
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look at the arrivals."""
@@ -41,6 +43,7 @@ class Arrive(OfBodies, EpisodePredicate):
             there = time is not None and time <= end + 1e-9
             if not there and self.or_near is not None and body.goal is not None:
                 there = math.dist(episode.positions(body.index)[-1], body.goal[:2]) <= self.or_near
+            there = there and not (self.for_good and (body.record.loop or body.record.wander))
             arrivals.append((body, there, "not" if time is None else f"after {time:.1f} s"))
         share = sum(there for _, there, _ in arrivals) / len(arrivals)
         wanted = self.share.eq != 0.0
