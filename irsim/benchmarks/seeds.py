@@ -21,7 +21,8 @@ def seeds_from(given: Any) -> list[int]:
     """The seeds, each once.
 
     Args:
-        given: The number of seeds (0, 1, 2, …), an iterable of seeds, or either as text: ``20``, ``5-9``, ``1,4,7``.
+        given: The number of seeds (0, 1, 2, …), an iterable of seeds, or either as text: ``20``, ``5-9``, ``5..9``,
+            ``1,4,7``.
 
     Raises:
         InputError: ``given`` is neither, or there are no seeds or too many.
@@ -52,7 +53,7 @@ def _read(text: str) -> Iterable[int]:
         return range(_checked_number(int(text)))
     seeds: list[int] = []
     for part in text.strip(",").split(","):
-        ends = re.fullmatch(r"(\d{1,20})(?:-(\d{1,20}))?", part)
+        ends = re.fullmatch(r"(\d{1,20})(?:(?:-|\.\.)(\d{1,20}))?", part)
         low, high = (0, -1) if ends is None else (int(ends[1]), int(ends[2] or ends[1]))
         if ends is None or not 0 <= high - low < _MAX_SEEDS:
             raise _wrong(text)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
 __all__ = [
+    "OUTCOME_COLORS",
     "console",
     "has_colors",
     "is_terminal",
@@ -28,6 +29,8 @@ __all__ = [
     "silence_stdout",
 ]
 
+OUTCOME_COLORS = {"success": "green", "collision": "red", "timeout": "yellow"}
+"""Colour of each outcome of an episode."""
 _PROGRESS_DELAY_S = 1.0
 """Time after which a progress bar appears [s]."""
 _LINE_PERIOD_S = 30.0

@@ -15,7 +15,8 @@ from irsim import api
 from irsim.cli.findings import import_user_modules, limits_for, print_findings
 from irsim.cli.guard import FAILED, ended_in_order
 from irsim.cli.options import File, Imports, Json, MaxObjects, Perturb, Seed, Steps, Strict, Until
-from irsim.cli.output import console, print_error, print_json, progress
+from irsim.cli.output import OUTCOME_COLORS, console, print_error, print_json, progress
+from irsim.cli.run_seeds import run_all
 from irsim.common.files import check_suffix
 from irsim.common.text import clean, seconds
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
@@ -30,12 +31,19 @@ __all__ = ["run", "show_result"]
 
 MAX_ROBOTS_SHOWN = 12
 """Number of robots that the table lists."""
-_COLORS = {"success": "green", "collision": "red", "timeout": "yellow"}
 
 
 def run(
     file: File,
     seed: Seed = None,
+    seeds: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SEEDS",
+            help="Run an episode for each of several seeds: their number from 0, or the seeds: 3, 0..19, 1,4,7.",
+            show_default=False,
+        ),
+    ] = None,
     steps: Steps = None,
     json_output: Json = False,
     save_gif: Annotated[
@@ -98,6 +106,25 @@ def run(
     the program of a bridge was lost.
     """
     import_user_modules(imports)
+    if seeds is not None:
+        single = {"--seed": seed, "--save-gif": save_gif, "--show": show, "--bridge": bridge, "--record-to": record_to}
+        run_all(
+            file,
+            seeds,
+            {**single, "--export": export},
+            json_output=json_output,
+            require_success=require_success,
+            steps=steps,
+            strict=strict,
+            policy=policy,
+            behavior=behavior,
+            perturb=perturb,
+            until=until,
+            imports=imports or (),
+            record=record,
+            limits=limits_for(max_objects),
+        )
+        return
     if show:
         _mention_missing_screen()
     with ended_in_order(), progress("simulating" if save_gif is None else "simulating and drawing") as report:
@@ -147,7 +174,7 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
         out.print(_table(result))
     if len(result.robots) > MAX_ROBOTS_SHOWN:
         out.print(f"... and {len(result.robots) - MAX_ROBOTS_SHOWN} more robots (--json lists all)")
-    ended = Text(ending(result.outcome, result.lost), style=f"bold {_COLORS[result.outcome]}")
+    ended = Text(ending(result.outcome, result.lost), style=f"bold {OUTCOME_COLORS[result.outcome]}")
     out.print(Text.assemble(ended, ": ", clean(result.summary, 400)))
     if result.reason and result.reason not in result.summary:
         out.print(f"reason: {clean(result.reason, 400)}")
@@ -191,7 +218,7 @@ def _table(result: RunResult) -> object:
     for robot in result.robots[:MAX_ROBOTS_SHOWN]:
         table.add_row(
             clean(robot.name, 24),
-            Text(robot.outcome, style=_COLORS[robot.outcome]),
+            Text(robot.outcome, style=OUTCOME_COLORS[robot.outcome]),
             "-" if robot.time_to_goal is None else seconds(robot.time_to_goal),
             *["-" if robot.laps is None else str(robot.laps)] * laps,
             f"{robot.path_length:.1f} m",

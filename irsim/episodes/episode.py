@@ -80,10 +80,9 @@ def advance(
         until_done: End as soon as every robot has arrived or stopped.
         recorder: Records the steps.
     """
-    done = 0
-    while done < steps and not (until_done and env.done()):
+    done, over = 0, until_done and bool(env.done())
+    while done < steps and not over:
         done += max(1, env.advance(min(_CHUNK_STEPS, steps - done), until_done=until_done, recorder=recorder))
+        over = until_done and bool(env.done())
         if progress is not None:
-            progress(done, steps)
-    if progress is not None and 0 < done < steps:
-        progress(done, done)  # it is over: the count ends at its total
+            progress(done, done if over else steps)  # the count ends at its total

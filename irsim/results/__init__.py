@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from irsim.results.episode import EventRecord, Left, RobotResult
     from irsim.results.findings import Edit, Finding
     from irsim.results.picture import MovingPose, RenderResult, RobotPlan, RobotPose, SnapshotResult
-    from irsim.results.run import HorizonSource, ReplayResult, RunResult, RunTable
+    from irsim.results.run import HorizonSource, ReplayResult, RunResult, RunsResult, RunTable
     from irsim.results.validation import (
         CommentChange,
         DryRun,
@@ -48,6 +48,7 @@ __all__ = [
     "RobotResult",
     "RunResult",
     "RunTable",
+    "RunsResult",
     "ScenarioDiff",
     "SnapshotResult",
     "Stuck",
@@ -62,7 +63,7 @@ _NAMES = {
     "episode": ["EventRecord", "Left", "RobotResult"],
     "findings": ["Edit", "Finding"],
     "picture": ["MovingPose", "RenderResult", "RobotPlan", "RobotPose", "SnapshotResult"],
-    "run": ["HorizonSource", "ReplayResult", "RunResult", "RunTable"],
+    "run": ["HorizonSource", "ReplayResult", "RunResult", "RunTable", "RunsResult"],
     "validation": ["DryRun", "Fix", "Stuck", "ValidationReport"],
 }
 """Public names of each module."""

@@ -26,7 +26,8 @@ _WATCHED = {
 class ConciseRobot(BaseModel):
     """One robot; lengths in m, times in s."""
 
-    model_config = ConfigDict(extra="allow")  # and the facts of _optional that are defined
+    # and the facts of _optional that are defined
+    model_config = ConfigDict(extra="allow", json_schema_extra=lambda schema: _shorten(schema))
 
     name: str
     outcome: str
@@ -63,14 +64,14 @@ class ConciseRobot(BaseModel):
         if self.time_to_goal is not None:
             off = f", heading {more['heading_error']:.2f} rad off" if "heading_error" in more else ""
             laps = more.get("laps")
-            arrived = "arrived" if laps is None else f"arrived {plural(laps, 'time')}, first"
+            arrived = "arrived" if laps in (None, 1) else f"arrived {plural(laps, 'time')}, first"
             facts.append(f"{arrived} at {self.time_to_goal:g} s{off}")
         if self.distance_to_goal is not None:
-            facts.append(f"{self.distance_to_goal:g} m from its goal")
+            facts.append(f"ends {self.distance_to_goal:g} m from its goal")
         count = more.get("contacts_between_steps", 0)
         if self.min_clearance is not None:
             place, other = more.get("nearest_at"), more.get("nearest_called", repr(self.nearest))
-            at = "" if place is None else " with its position at ({:g}, {:g})".format(*place)
+            at = "" if place is None else " when it was at ({:g}, {:g})".format(*place)
             near = f"came as near as {self.min_clearance + 0.0:g} m to {other}, edge to edge,"
             if self.min_clearance < 0:
                 near = f"overlapped {other} by {-self.min_clearance:g} m when they collided,"
@@ -98,7 +99,7 @@ class ConciseRobot(BaseModel):
 class ConciseEvent(BaseModel):
     """An event of the episode; the partner is the other object, or the zone."""
 
-    model_config = ConfigDict(extra="forbid", json_schema_extra=lambda schema: schema.pop("description"))
+    model_config = ConfigDict(extra="forbid", json_schema_extra=lambda schema: _shorten(schema))
 
     time: float
     step: int
@@ -156,6 +157,7 @@ class ConciseRun(BaseModel):
     warnings: list[str]
     artifacts: dict[str, str] | None = None
     reproduce: str | None = None
+    episodes: list[dict[str, Any]] | None = None
     next: str
 
     def text(self) -> str:
@@ -179,6 +181,13 @@ class ConciseRun(BaseModel):
                 f"Next: {self.next}",
             ]
         )
+
+
+def _shorten(schema: dict[str, Any]) -> None:
+    """Leave types out of a part of a schema that is read before every session with a model."""
+    names = list(schema["properties"])
+    schema.clear()
+    schema |= {"type": "object", "properties": {name: {} for name in names}}
 
 
 def is_command(reproduce: str) -> bool:

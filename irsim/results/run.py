@@ -21,6 +21,7 @@ __all__ = [
     "ReplayResult",
     "RunResult",
     "RunTable",
+    "RunsResult",
     "Until",
 ]
 
@@ -185,6 +186,34 @@ class RunResult(Result):
         if len(warnings) > MAX_CONCISE:
             lines.append(f"{len(warnings) - MAX_CONCISE} more: validate_scenario lists them")
         return [*lines, *(f"the recording is incomplete: {note}" for note in self.notes)]
+
+
+class RunsResult(Result):
+    """The result of ``irsim run --seeds``: an episode for each seed."""
+
+    scenario: str
+    """The file."""
+    summary: str
+    """How many episodes succeeded, and which seeds failed."""
+    failed: dict[str, list[int]]
+    """Seeds of the episodes that did not succeed, by outcome."""
+    crowded: list[int]
+    """Seeds that leave no room for an object; they have no episode."""
+    not_run: list[int]
+    """Seeds for which there was no time."""
+    same: bool
+    """Whether nothing is random, so that one episode stands for all seeds."""
+    episodes: list[RunResult]
+    """The episodes, in the order of the seeds."""
+    warnings: list[Finding]
+    """What the check of the scenario finds, hints included."""
+    version: str
+    """Version of irsim."""
+
+    @property
+    def shown(self) -> RunResult:
+        """The first episode that failed, else the first one."""
+        return next((one for one in self.episodes if one.outcome != "success"), self.episodes[0])
 
 
 class RunTable(Result):

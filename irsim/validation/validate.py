@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from irsim.common.text import plural
@@ -21,7 +21,7 @@ from irsim.validation.diff.compare import compare
 from irsim.validation.dry_run import dry_run
 from irsim.validation.feasibility.check import feasibility_findings
 
-__all__ = ["diff", "fix", "report", "report_of", "validate"]
+__all__ = ["diff", "fix", "report", "report_of", "validate", "warn_of_collisions"]
 
 
 def validate(
@@ -61,7 +61,10 @@ def validate(
     if simulate and reading.scenario is not None:
         report.dry_run = _dry_run_or_findings(report, reading, seed, limits)
         if report.dry_run is not None:
-            _warn_of_collisions(report, reading.scenario, report.dry_run)
+            hit = {name for event in report.dry_run.collisions for name in (event.object, event.partner)}
+            if more := warn_of_collisions(report.findings, reading.scenario, {str(name) for name in hit}):
+                report.hints, report.warnings = report.hints - more, report.warnings + more
+                report.summary = f"{report.summary.partition(';')[0]}; {plural(report.warnings, 'warning')}"
     return report
 
 
@@ -171,19 +174,22 @@ def _mark_old(findings: list[Finding], base: Reading) -> None:
         finding.in_base = bool({(finding.code, finding.path), (finding.code, finding.message)} & known)
 
 
-def _warn_of_collisions(report: ValidationReport, scenario: ResolvedScenario, tried: DryRun) -> None:
-    """Make hints that a robot dashes into an obstacle warnings if one of these robots has collided in the try."""
-    hit = {name for event in tried.collisions for name in (event.object, event.partner)}
-    entries = {format_path(record.path) for record in scenario.robots() if record.name in hit}
-    for finding in report.findings:
+def warn_of_collisions(findings: Sequence[Finding], scenario: ResolvedScenario, hit: Collection[str]) -> int:
+    """Make hints that a robot dashes into an obstacle warnings where it has collided; return their number.
+
+    Args:
+        findings: Findings about the scenario.
+        scenario: The scenario.
+        hit: Names of objects that have collided.
+    """
+    entries, count = {format_path(record.path) for record in scenario.robots() if record.name in hit}, 0
+    for finding in findings:
         if finding.code != "dash-into-obstacle" or finding.severity != "hint":
             continue
         if any(finding.path.startswith(f"{entry}.") or finding.path == entry for entry in entries):
-            finding.severity = "warning"
+            finding.severity, count = "warning", count + 1
             finding.message += "; it collided when tried"
-            report.hints, report.warnings = report.hints - 1, report.warnings + 1
-    counted = f"; {plural(report.warnings, 'warning')}" if report.warnings else ""
-    report.summary = report.summary.partition(";")[0] + counted
+    return count
 
 
 def _dry_run_or_findings(

@@ -72,7 +72,7 @@ class _Progress:
 
     def __call__(self, done: int, total: int) -> None:
         now = time.monotonic()
-        if now >= self._next:
+        if now >= self._next or done == total:
             self._next = now + _PROGRESS_PERIOD_S
             self._answer(json.dumps({"progress": [done, total]}))
 
@@ -110,17 +110,35 @@ def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
 
 def _run(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.api import run
+
+    return str(_recorded(run, job, progress).model_dump_json())
+
+
+def _run_seeds(job: dict[str, Any], progress: _Progress) -> str:
+    """Run several episodes, and draw the first that failed at the moment that decided it."""
+    from irsim.api.run_seeds import run_seeds
+
+    result = _recorded(run_seeds, job, progress)
+    shown, png = result.shown, ""
+    if shown.outcome != "success" and shown.run_id is not None:
+        drawn = {"size": 600, "overlays": None, "region": None, "draw": True, "strip": None}
+        job["arguments"] = {"run_id": shown.run_id, "steps": shown.decisive_step or shown.steps, **drawn}
+        png = json.loads(_run_snapshot(job, _Progress(lambda line: None)))["png"]
+    return f'{{"png": "{png}", "result": {result.model_dump_json()}}}'
+
+
+def _recorded(work: Callable[..., Any], job: dict[str, Any], progress: _Progress) -> Any:
+    """The result of runs that are recorded, or are not where the disk is full or refuses."""
     from irsim.runs import RunError
 
     arguments = {**job["arguments"], "strict": True, "limits": _limits(job), "progress": progress}
     try:
-        result = run(**arguments, record=True, recorded=progress.recorded)
+        return work(**arguments, record=True, recorded=progress.recorded)
     except RunError as error:
         if error.code not in ("disk-full", "file-access"):
             raise
         print(f"irsim-mcp: no record of this run: {error.message}", file=sys.stderr)
-        result = run(**arguments)
-    return result.model_dump_json()
+        return work(**arguments)
 
 
 def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
@@ -299,6 +317,7 @@ _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "validate": _validate,
     "validate_new": _validate_new,
     "run": _run,
+    "run_seeds": _run_seeds,
     "snapshot": _snapshot,
     "run_snapshot": _run_snapshot,
     "inspect": _inspect,

@@ -11,6 +11,7 @@ __all__ = [
     "MAX_BEHAVIORS",
     "MAX_EPISODES",
     "MAX_RUN_SECONDS",
+    "MAX_RUN_SEEDS",
     "MAX_SCENARIOS",
     "MAX_SEED",
     "MAX_SEEDS",
@@ -28,6 +29,8 @@ MAX_BEHAVIORS = 8
 """Number of behaviors of a benchmark."""
 MAX_SEEDS = 100
 """Number of seeds of a benchmark."""
+MAX_RUN_SEEDS = 20
+"""Number of seeds of one call of run_episode; a benchmark takes more, as a job."""
 MAX_EPISODES = 2_000
 """Number of episodes of a benchmark."""
 MAX_SEED = 2**53 - 1

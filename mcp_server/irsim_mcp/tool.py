@@ -243,6 +243,8 @@ def _accepted(schema: Mapping[str, Any], given: Any = None) -> str:
         return f"give a list of {count}{_PLURALS.get(schema['items'].get('type', ''), 'values')}"
     if "anyOf" in schema:
         return f"give {' or '.join(_accepted(option).removeprefix('give ') for option in schema['anyOf'])}"
+    if isinstance(schema.get("type"), list):
+        return f"give {' or '.join(_KINDS.get(kind, f'a {kind}') for kind in schema['type'])}"
     low, high = schema.get("minimum"), schema.get("maximum")
     kind = _KINDS.get(schema.get("type", ""), "what the schema says")
     if "maxLength" in schema:
@@ -270,8 +272,8 @@ def reporter(context: Context[Any, Any], unit: str) -> Progress:
     async def report(done: int, total: int) -> None:
         nonlocal last, due
         now = time.monotonic()
-        if done > last and now >= due:
+        if done > last and (now >= due or done == total):  # a count ends at its total
             last, due = done, now + _PERIOD_S
-            await context.report_progress(done, total, f"{done:,} of at most {total:,} {unit}")
+            await context.report_progress(done, total, f"{done:,} of {'at most ' * (done < total)}{total:,} {unit}")
 
     return report

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import json
 from typing import Annotated, Any, Literal
 
 from mcp.server.mcpserver import Context
-from mcp.types import CallToolResult, TextContent
-from pydantic import Field
+from mcp.types import CallToolResult, ImageContent, TextContent
+from pydantic import Field, WithJsonSchema
 
+from irsim.benchmarks.seeds import seeds_from
+from irsim.common.text import clean, listed, plural
+from irsim.diagnostics.errors import InputError
 from irsim.results.concise import ConciseRun
 from irsim.results.episode import EventRecord
-from irsim.results.run import LOST_THINGS, MAX_CONCISE, MAX_DETAILED, RunResult
-from irsim_mcp.answers import WorkerResult, json_answer
-from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_SEED, MAX_STEPS
+from irsim.results.run import LOST_THINGS, MAX_CONCISE, MAX_DETAILED, RunResult, RunsResult
+from irsim_mcp.answers import WorkerResult, failure, json_answer
+from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_RUN_SEEDS, MAX_SEED, MAX_STEPS
 from irsim_mcp.resources import PAGE, uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, reporter, strict
@@ -25,9 +29,13 @@ _DESCRIPTION = """
     Simulate an episode until every robot has arrived or stopped, or time is up. Outcome is success (every robot
     reached its goal, no collision before), collision, or timeout; none is an error. The reason says what hit or passed
     through what, where, when, and distances to goals. Returns robots (unsuccessful first), first events, a run_id,
-    kept 24 hours. Next: after a failure make the call in `next`, change the scenario and run again; after success
-    try other seeds if anything is random.
+    kept 24 hours. With seeds: all findings, `episodes`, and the first that failed in full with a picture of that
+    moment. Next: after a failure make the call in `next`, change the scenario and run again.
 """
+_SHARE = 0.7
+"""Share of the time of a call in which episodes begin; the rest is for the picture."""
+_MAX_LINES = 5
+"""Number of failed episodes that the text says a line about."""
 _UNDRIVEN = "has no behavior"
 """Part of the reason of a run with a robot that nothing drives."""
 _ARTIFACTS = ("events.json", "trace.csv")
@@ -46,12 +54,20 @@ def tool(services: Services) -> StrictTool:
         seed: Annotated[
             int | None, Field(ge=0, le=MAX_SEED, description="Default: the scenario's, else drawn.")
         ] = None,
+        seeds: Annotated[
+            int | str | list[int] | None,
+            WithJsonSchema({"type": ["integer", "string", "array"]}),
+            Field(description=f"Several, at most {MAX_RUN_SEEDS}: 3, '0..19', [1, 4]."),
+        ] = None,
         policy: Annotated[str | None, Field(max_length=500, description="Of all robots, as in benchmark.")] = None,
         perturb: Annotated[str | None, Field(max_length=500, description="As in benchmark.")] = None,
         max_steps: Annotated[
             int | None,
             Field(ge=1, le=MAX_STEPS, description=f"Default: the scenario's time limit, at most {MAX_STEPS:,}."),
         ] = None,
+        until: Annotated[
+            Literal["done", "time_limit"], Field(description="time_limit: a robot with loop patrols on.")
+        ] = "done",
         max_wall_s: Annotated[
             int, Field(ge=1, le=MAX_RUN_SECONDS, description="Seconds of computing.")
         ] = MAX_RUN_SECONDS,
@@ -63,17 +79,23 @@ def tool(services: Services) -> StrictTool:
             ),
         ] = "concise",
     ) -> Annotated[CallToolResult, ConciseRun]:
+        if seeds is not None and seed is not None:
+            raise failure("bad-argument", "seed and seeds are given", where="seeds", fix="give one of them")
+        several = {} if seeds is None else {"seeds": _few(seeds), "wall_s": _SHARE * max_wall_s}
         data = await services.scenario_job(
-            "run",
+            "run_seeds" if several else "run",
             scenario_path,
             scenario_yaml,
             seconds=max_wall_s,
-            progress=reporter(ctx, "steps"),
-            seed=seed,
+            progress=reporter(ctx, "episodes" if several else "steps"),
+            **(several or {"seed": seed}),
             steps=max_steps,
             policy=await services.suite_policy(scenario_path, policy),
             perturb=perturb,
+            until=until,
         )
+        if several:
+            return _of_seeds(data, services, services.given(scenario_path, scenario_yaml), response_format)
         given = services.given(scenario_path, scenario_yaml)
         result = RunResult.model_validate(data)
         episode = result.concise(
@@ -92,6 +114,105 @@ def tool(services: Services) -> StrictTool:
     )  # fmt: skip
 
 
+def _few(seeds: int | str | list[int]) -> list[int]:
+    """The seeds, one by one.
+
+    Raises:
+        ToolError: They are not valid, or too many.
+    """
+    try:
+        chosen = seeds_from(seeds)
+    except InputError as error:
+        raise failure("bad-argument", error.message, where="seeds", fix=error.fix) from None
+    if len(chosen) > MAX_RUN_SEEDS or max(chosen) > MAX_SEED:
+        what = f"{len(chosen):,} seeds are given, at most {MAX_RUN_SEEDS} are run at once, each at most {MAX_SEED}"
+        fix = "benchmark runs up to 100 seeds, as a job that may take longer"
+        raise failure("over-limit", what, where="seeds", fix=fix)
+    return chosen
+
+
+def _of_seeds(data: WorkerResult, services: Services, given: str, form: str) -> CallToolResult:
+    """The answer about several episodes: a line each, and the first that failed in full, with its picture."""
+    whole = RunsResult.model_validate(data["result"])
+    shown, detailed = whole.shown, form == "detailed"
+    shown.warnings = whole.warnings
+    artifacts = None if shown.run_id is None else {name: uri(shown.run_id, name) for name in _ARTIFACTS}
+    advice = _advice_on_seeds(whole, given, bool(data["png"]))
+    episode = shown.concise(detailed=detailed, artifacts=artifacts, advice=advice)
+    episode.summary = clean(f"{whole.summary}. Seed {shown.seed}: {episode.summary}", 600)
+    episode.episodes = [_brief(one) for one in whole.episodes]
+    lines = [f"{whole.summary}.", *(_lines(episode.episodes) if len(episode.episodes) > 1 else ()), _found(whole)]
+    if whole.failed or whole.same:
+        picture = f" (the picture shows step {shown.decisive_step or shown.steps})" if data["png"] else ""
+        lines += [
+            f"{'The first that failed, ' * (not whole.same)}seed {shown.seed}{picture}:",
+            _whole_text(shown, episode),
+        ]
+    else:
+        lines += [*(f"Warning: {warning}" for warning in episode.warnings), f"Next: {advice}"]
+    content: list[TextContent | ImageContent] = [TextContent(type="text", text="\n".join(lines))]
+    if form == "json":
+        result = WorkerResult(data["result"])
+        result.text = json.dumps(data["result"], separators=(",", ":"))
+        content = [json_answer(result, services.limits.text, "give fewer seeds, or use response_format=detailed")]
+    if data["png"]:
+        content.append(ImageContent(type="image", data=data["png"], mime_type="image/png"))
+    return CallToolResult(content=[*content], structured_content=episode.model_dump(exclude_none=True))
+
+
+def _brief(one: RunResult) -> dict[str, Any]:
+    """An episode in a few values."""
+    brief = {"seed": one.seed, "outcome": one.outcome, "sim_time": round(one.sim_time, 3), "run_id": one.run_id}
+    why = None if one.reason is None else clean(one.reason, 160)
+    return {key: value for key, value in {**brief, "reason": why}.items() if value is not None}
+
+
+def _lines(episodes: list[dict[str, Any]]) -> list[str]:
+    """A line for each episode that failed, up to a number, and one for all others."""
+    failed = [one for one in episodes if one["outcome"] != "success"]
+    lines = [f"- seed {one['seed']}{_ending(one)}: {one.get('reason', 'no reason')}" for one in failed[:_MAX_LINES]]
+    if more := [str(one["seed"]) for one in failed[_MAX_LINES:]]:
+        lines.append(f"- also failed: {', '.join(more)}")
+    good = [f"{one['seed']}{_ending(one)}" for one in episodes if one["outcome"] == "success"]
+    return [*lines, f"- success: seed {listed(good, MAX_CONCISE)}"] if good else lines
+
+
+def _ending(brief: dict[str, Any]) -> str:
+    return " at {:g} s".format(brief["sim_time"]) + (f" ({brief['run_id']})" if "run_id" in brief else "")
+
+
+def _whole_text(shown: RunResult, episode: ConciseRun) -> str:
+    """An episode in full, without a reason that its summary has, nor events of others if there are any of robots."""
+    robots = {robot.name for robot in shown.robots}
+    about = [event for event in episode.events if robots & {event.object, event.partner}]
+    reason = None if episode.reason and episode.reason in shown.summary else episode.reason
+    changes = {"summary": clean(shown.summary, 400), "reason": reason, "events": about or episode.events}
+    return episode.model_copy(update=changes).text()
+
+
+def _found(whole: RunsResult) -> str:
+    """What the check found; warnings have lines of their own."""
+    codes = dict.fromkeys(item.code for item in whole.warnings if item.severity == "hint")
+    warned = sum(item.severity == "warning" for item in whole.warnings)
+    found = plural(warned, "warning") if warned else "no warnings"
+    return f"Check: {found}" + (f", {plural(len(codes), 'hint')} ({', '.join(codes)})" if codes else "")
+
+
+def _advice_on_seeds(whole: RunsResult, given: str, seen: bool) -> str:
+    """The next call to make after several episodes."""
+    name, shown = given.removeprefix("scenario_path="), whole.shown
+    more = f"benchmark scenarios=[{name!r}] seeds=20" + (" perturb=position=0.1" if whole.same else "")
+    if not shown.robots:
+        return _advice(shown, given)
+    if not whole.failed:
+        left = f"{plural(len(whole.not_run), 'seed')} had no time: " if whole.not_run else "Nothing failed; for more: "
+        return f"{left}{more}."
+    if not seen:
+        return _advice(shown, given)
+    view = "speeds" if shown.outcome == "timeout" else "collisions"
+    return f"If the picture does not say why: inspect_run run_id={shown.run_id} view={view}. Change it, and run again."
+
+
 def _json_answer(data: WorkerResult, most: int) -> TextContent:
     """The complete JSON; if that is too long, the error says how the run ended and where to read the rest."""
     run, prefix = data["run_id"], f"the run is done, outcome {data['outcome']}, but "
@@ -108,6 +229,8 @@ def _advice(result: RunResult, given: str) -> str:
     run = f" {given}{seed}" if result.run_id is None else f" run_id={result.run_id}"
     if result.lost_code is not None:
         return f"The {LOST_THINGS[result.lost_code]} was lost: start it again, then run_episode {given}{seed}."
+    if not result.robots:
+        return "Nothing to run for: there are no robots, so no run succeeds or fails. Add a robot if one is to drive."
     jammed = set(result.jammed)
     if outcome == "success" and not jammed:
         if any(robot.contacts_between_steps for robot in result.robots):
@@ -116,6 +239,8 @@ def _advice(result: RunResult, given: str) -> str:
             return f"Do not trust this success: a robot touched something between two steps; {again}{look}."
         name = given.removeprefix("scenario_path=")
         more = f"; try other seeds with benchmark scenarios=[{name!r}]" if result.random else ""
+        if any(robot.laps is not None for robot in result.robots) and result.until == "done":
+            more = f"; to see it patrol on, run_episode {given}{seed} until=time_limit{more}"
         return f"See it with render_snapshot{run} {_STRIP}{more}."
     if outcome == "timeout" and _UNDRIVEN in str(result.reason):
         return (
