@@ -117,8 +117,9 @@ class Pin(Record):
     facts: Annotated[list[str], BeforeValidator(_as_list)]
     """Facts: ``count``, ``kinematics``, ``size``, ``shape``, ``pose`` (``position``, ``heading``), ``goal``,
     ``behavior``, ``limits`` (``forward``, ``backward``, ``turn``, …), ``sensors`` (``range``, ``beams``, ``opening``,
-    …), ``color``, ``name``; of the world ``size``, ``origin``, ``map``, ``times``, ``modes``, and where they are free
-    ``mirror_x`` and ``mirror_y``; of the reply ``reply``, ``replies``; of the text ``comments``, ``layout``."""
+    …), ``color``, ``name``, ``way`` (from start to goal), ``cover`` (of what is fixed: it may grow, not shrink or
+    move); of the world ``size``, ``origin``, ``map``, ``times``, ``modes``, and where they are free ``mirror_x`` and
+    ``mirror_y``; of the reply ``reply``, ``replies``; of the text ``comments``, ``layout``."""
     why: str = ""
     """Reason, where it is not plain from the prompt."""
 

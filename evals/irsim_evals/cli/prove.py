@@ -17,7 +17,7 @@ from irsim_evals.proof.trials import Trial
 
 __all__ = ["prove"]
 
-_BAR = 0.01
+_BARS = {"false accepts": 0.01, "false accepts of attacks": 0.002, "false rejects": 0.01}
 """Greatest share of wrong verdicts."""
 MIN_REWRITES, MIN_MUTANTS = 10, 30
 """Numbers of trials of each case below which the proof says so."""
@@ -31,10 +31,11 @@ def prove(
     cases_folder: CasesFolder = None,
     golds_folder: GoldsFolder = None,
 ) -> None:
-    """Prove the grader: golds and their rewrites pass, mutants of pinned facts and null agents fail.
+    """Prove the grader: golds and their rewrites pass, mutants of pinned facts, attacks and null agents fail.
 
-    Exits with 1 if more than 1 % of the right answers are rejected, or of the wrong ones accepted, if a trial got no
-    verdict within its processor time, or if the second implementation of the commonest predicates disagrees.
+    Exits with 1 if more than 1 % of the right answers are rejected, or of the wrong ones accepted (0.2 % of the
+    attacks), if a trial got no verdict within its processor time, or if the second implementation of the commonest
+    predicates disagrees.
     """
     begin = time.perf_counter()
     store = store_of(cases_folder, golds_folder)
@@ -61,10 +62,15 @@ def prove(
     if (
         proof.unjudged
         or proof.disagreements
-        or any(wrong > _BAR * count for wrong, count in (proof.false_accepts, proof.false_rejects))
+        or any(wrong > _BARS[name] * count for name, (wrong, count) in _rates(proof).items())
     ):
         raise typer.Exit(1)
     end_with(bad)
+
+
+def _rates(proof: Proof) -> dict[str, tuple[int, int]]:
+    """Number of wrong verdicts of each kind, and of the trials that could have had one."""
+    return {name: getattr(proof, name.replace(" ", "_")) for name in _BARS}
 
 
 def _said_of(trial: Trial) -> str:
@@ -88,7 +94,7 @@ def _show(proof: Proof, seconds: float, quick: bool) -> None:
         out.print(f"WRONG {_said_of(trial)}: {told}", soft_wrap=True)
     for trial, why in proof.unjudged:
         out.print(f"NO VERDICT {_said_of(trial)}: {why}", soft_wrap=True)
-    for name, (wrong, count) in (("false accepts", proof.false_accepts), ("false rejects", proof.false_rejects)):
+    for name, (wrong, count) in _rates(proof).items():
         out.print(f"{name}: {wrong} of {count}" + (f" ({wrong / count:.2%})" if count else ""))
     for item in proof.disagreements:
         out.print(f"DISAGREE {_words_of(item)}", soft_wrap=True)

@@ -24,7 +24,7 @@ from irsim_evals.grader.outcome import NOT_REACHED, STAGES, Outcome, Stage, Verd
 from irsim_evals.grader.predicates._base import Observation
 from irsim_evals.grader.programs import problems_in
 from irsim_evals.grader.relations import related
-from irsim_evals.grader.sanity import check_goals, check_moves, check_scene, latest_start
+from irsim_evals.grader.sanity import check_goals, check_moves, check_scene, check_sensors, latest_start
 
 __all__ = ["failed_verdict", "grade"]
 
@@ -211,6 +211,7 @@ def _sanity(instance: Instance, material: Material, outcomes: list[Outcome], mov
         results = check_scene(material, material.scene(seed), overlap=not case.overlap)
         outcomes += [item for item in results if not item.passed] if seed != case.seeds[0] else results
     if material.scenario is not None:
+        outcomes.append(check_sensors(material.scene(case.seeds[0])))
         outcomes.append(check_goals(material.scene(case.seeds[0])))
         if moves:
             outcomes.append(_moves(instance, material))

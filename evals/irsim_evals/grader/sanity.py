@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
     from irsim_evals.grader.scene import GradedScene
 
-__all__ = ["check_goals", "check_moves", "check_scene", "latest_start", "overlaps"]
+__all__ = ["check_goals", "check_moves", "check_scene", "check_sensors", "latest_start", "overlaps"]
 
 _TOUCH = 1e-6
 """Depth [m] up to which two bodies count as touching."""
@@ -29,6 +29,10 @@ _NEAR, _NEAR_SHARE = 1.0, 0.2
 """A goal may count as reached at this distance [m], or at this share of the way to it, whichever is more."""
 _MAX_DELAY = 60.0
 """Time [s] after which a body that has not come or not started takes no part, if there is no time limit."""
+_BESIDE = 0.5
+"""A sensor may stand at this distance [m] beside its body."""
+_BLIND_SHARE = 0.5
+"""Share of its range in which a sensor may be blind."""
 _MAX_PAIRS = 200
 """Number of overlapping pairs that are collected."""
 
@@ -113,6 +117,20 @@ def latest_start(scene: GradedScene) -> float:
     return max((delay for delay in delays if delay <= _longest_delay(scene)), default=0.0)
 
 
+def check_sensors(scene: GradedScene) -> Outcome:
+    """Sensors sit on their bodies and see what is near, too."""
+    odd = []
+    for body in scene.bodies:
+        for sensor in body.sensors:
+            away = math.hypot(*(sensor.get("offset") or [0.0, 0.0])[:2])
+            if away > max(body.extent) + _BESIDE:
+                odd.append((body, f"a sensor stands {away:.1f} m away"))
+            elif sensor.get("range_min", 0.0) > _BLIND_SHARE * sensor.get("range_max", math.inf):
+                odd.append((body, f"a sensor sees nothing nearer than {sensor['range_min']:g} m"))
+    expected = "sensors sit on their bodies and see what is near"
+    return _outcome("sensors-see", expected, odd, "so it is", "sensors", scene.seed)
+
+
 def check_goals(scene: GradedScene) -> Outcome:
     """Goals mean something: they count as reached only near them, and some robot has time enough for its way."""
     limit = scene.world.time_limit
@@ -122,6 +140,11 @@ def check_goals(scene: GradedScene) -> Outcome:
         (body, f"has arrived {body.record.goal_threshold:g} m away")
         for body, way in ways
         if body.record.goal_threshold > max(_NEAR, _NEAR_SHARE * way)
+    ]
+    odd += [
+        (body, "is at its goal from the start")
+        for body, _ in ways
+        if all(math.dist(body.pose[:2], goal[:2]) <= body.record.goal_threshold for goal in body.goals)
     ]
     key = "goal_threshold"
     robots = [(body, way) for body, way in ways if body.role == "robot"]

@@ -19,9 +19,12 @@ FACTS = (
     "count", "role", "kinematics", "shape", "size", "position", "heading", "goal", "goal_heading", "behavior",
     "options", "forward", "backward", "sideways", "turn", "steer", "acce", "sensor_count", "sensor_kind", "range",
     "beams", "opening", "sensor_options", "color", "name", "threshold", "passable", "wheelbase", "fov", "tags",
-    "noise", "driven", "random",
+    "noise", "driven", "way", "random", "cover",
 )  # fmt: skip
-"""Kinds of facts of a body; ``driven`` is whether it has a behavior, ``random`` whether its place is drawn."""
+"""Kinds of facts of a body; ``driven`` is whether it has a behavior, ``way`` how its goals lie from its start,
+``random`` whether its place is drawn, ``cover`` whether all that a fixed body covered is covered still."""
+_DERIVED = {"way": ("position", "goal"), "cover": ("position", "size", "shape", "heading", "count")}
+"""Kind of fact → kinds that it follows from, so that whoever leaves one of them free leaves it free."""
 GROUPS = {
     "pose": ("position", "heading"),
     "limits": ("forward", "backward", "sideways", "turn", "steer", "acce"),
@@ -51,12 +54,14 @@ def changed_facts(before: GradedScene, after: GradedScene) -> set[tuple[str, str
         if body is None:
             differences.add((f"+{other.name}" if other is not None else "+", "count"))
         elif other is None:
-            differences.add((body.name, "count"))
+            differences |= {(body.name, "count"), (body.name, "cover")}
         else:
+            if body.static and not other.footprint.buffer(_SAME).covers(body.footprint):
+                differences.add((body.name, "cover"))
             if (body.index in drawn) != (other.index in drawn_after):
                 differences.add((body.name, "random"))
             differences |= {
-                (body.name, kind) for kind in FACTS[1:-1] if not _alike(_of_body(body, kind), _of_body(other, kind))
+                (body.name, kind) for kind in FACTS[1:-2] if not _alike(_of_body(body, kind), _of_body(other, kind))
             }
     return differences
 
@@ -81,6 +86,7 @@ def touches(
     touched: set[tuple[str, str]] = set()
     for pin in pins:
         kinds = {kind for fact in pin.facts for kind in GROUPS.get(fact, (fact,))}
+        kinds |= {kind for kind, of in _DERIVED.items() if kinds.intersection(of)}
         if pin.of in ("reply", "text"):
             continue
         if pin.of == "world":
@@ -137,6 +143,8 @@ def _of_body(body: GradedBody, kind: str) -> Any:
         return _heading(body)
     if kind == "goal":
         return [goal[:2] for goal in body.goals]
+    if kind == "way":
+        return [[goal[0] - body.pose[0], goal[1] - body.pose[1]] for goal in body.goals]
     if kind == "goal_heading":
         return [goal[2:3] for goal in body.goals]
     if kind == "shape":

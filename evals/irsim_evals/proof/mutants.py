@@ -10,12 +10,13 @@ import yaml
 
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer
-from irsim_evals.proof import mutants_of_entries, mutants_of_values
+from irsim_evals.proof import attacks, attacks_on_places, mutants_of_entries, mutants_of_values
+from irsim_evals.proof.attacks_on_answers import attacks_on_answer
 from irsim_evals.proof.operators import OPERATORS, Data, Mutant, plain
 
 __all__ = ["mutants_of", "mutants_of_answer", "mutants_of_text"]
 
-_MODULES = (mutants_of_entries, mutants_of_values)
+_MODULES = (mutants_of_entries, mutants_of_values, attacks, attacks_on_places)
 """They register their operators when they are imported."""
 _NUMBER = re.compile(r"(?<![\w.#\"'-])(-?\d+(?:\.\d+)?)(?![\w.:\"'])")
 _BOAST = "Done. Everything was built exactly as you asked, and all assertions passed."
@@ -50,7 +51,8 @@ def mutants_of_text(text: str) -> Iterator[tuple[str, str, Data]]:
 
 
 def mutants_of_answer(instance: Instance, answer: Answer, main: str | None) -> Iterator[tuple[str, str, str, Answer]]:
-    """Operator, what was changed, fact that it touches (``reply``, ``comments``, ``layout``, ``files``), the mutant.
+    """Operator, what was changed, fact that it touches (``reply``, ``comments``, ``layout``, ``files``, or ``attack``
+    where it is wrong whatever a case pins), the mutant.
 
     Args:
         instance: The case.
@@ -59,6 +61,7 @@ def mutants_of_answer(instance: Instance, answer: Answer, main: str | None) -> I
     """
     for what, reply in (("left out", ""), ("a boast", _BOAST), ("the prompt", instance.prompt)):
         yield "reply_replaced", what, "reply", replace(answer, reply=reply, replies=(*answer.replies[:-1], reply))
+    yield from ((operator, what, "attack", made) for operator, what, made in attacks_on_answer(instance, answer))
     earlier = answer.replies[:-1]
     if earlier:
         yield "reply_replaced", "earlier ones left out", "replies", replace(answer, replies=("", *answer.replies[1:]))

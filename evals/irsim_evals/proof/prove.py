@@ -73,7 +73,12 @@ class Proof:
     @property
     def false_accepts(self) -> tuple[int, int]:
         """Wrong answers that were accepted, of all wrong answers."""
-        return self.rate("pinned mutant", "broken mutant", "mutant", "null")
+        return self.rate("pinned mutant", "broken mutant", "attack", "null")
+
+    @property
+    def false_accepts_of_attacks(self) -> tuple[int, int]:
+        """Attacks that were accepted, of all attacks."""
+        return self.rate("attack")
 
     @property
     def false_rejects(self) -> tuple[int, int]:
@@ -171,6 +176,7 @@ def as_case_rows(proof: Proof) -> list[dict[str, Any]]:
             "mutants": sum(
                 number for (name, kind), number in proof.by_case.items() if name == case and "mutant" in kind
             ),
+            "attacks": proof.by_case[case, "attack"],
             "null": proof.by_case[case, "null"],
             "wrong": bad[case],
         }

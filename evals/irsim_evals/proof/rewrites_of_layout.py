@@ -145,15 +145,16 @@ def entries_as_groups(text: str, data: Data, scene: GradedScene) -> str | None:
     return dump(data)
 
 
-def _mirrored(data: Data, scene: GradedScene, axis: int) -> str | None:
+def mirrored(data: Data, axis: int) -> Data | None:
     """Everything mirrored about the middle of the world, along x (0) or y (1)."""
-    low, high = scene.bounds[axis], scene.bounds[axis + 2]
-    if scene.env.scenario.placements or scene.world.obstacle_map is not None:
+    world = data.get("world") or {}
+    low, size = (world.get("offset") or [0.0, 0.0])[axis], world.get(("width", "height")[axis], 10.0)
+    if world.get("obstacle_map") is not None:
         return None
 
     def pose(value: list[float]) -> list[float]:
         made = list(value)
-        made[axis] = round(low + high - made[axis], 9)
+        made[axis] = round(2 * low + size - made[axis], 9)
         if len(made) > 2:
             made[2] = round(math.pi - made[2] if axis == 0 else -made[2], 9)
         return made
@@ -174,14 +175,16 @@ def _mirrored(data: Data, scene: GradedScene, axis: int) -> str | None:
             if not with_heading:
                 entry["state"] = [*entry["state"], math.pi if axis == 0 else 0.0]
             shape["vertices"] = [[x, -y] for x, y in shape["vertices"]]
-    return dump(data)
+    return data
 
 
 def mirrored_left_right(text: str, data: Data, scene: GradedScene) -> str | None:
     """Left and right exchanged, for cases that leave it free."""
-    return _mirrored(data, scene, 0)
+    made = mirrored(data, 0)
+    return None if made is None else dump(made)
 
 
 def mirrored_up_down(text: str, data: Data, scene: GradedScene) -> str | None:
     """Up and down exchanged, for cases that leave it free."""
-    return _mirrored(data, scene, 1)
+    made = mirrored(data, 1)
+    return None if made is None else dump(made)

@@ -25,6 +25,7 @@ from irsim_evals.cases.store import PUBLISHED, Instance, Store, case_of, golds_o
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.material import LIMITS, write_files
 from irsim_evals.grader.scene import GradedScene, open_scene
+from irsim_evals.proof.attacks import ATTACKS, is_wrong
 from irsim_evals.proof.changes import changed_facts, touches
 from irsim_evals.proof.mutants import mutants_of, mutants_of_answer, mutants_of_text
 from irsim_evals.proof.operators import Data, dump
@@ -32,7 +33,7 @@ from irsim_evals.proof.rewrites import rewrites_of
 
 __all__ = ["Kind", "Trial", "kind_of", "scene_of", "trials_of"]
 
-Kind = Literal["gold", "rewrite", "mutant", "pinned mutant", "broken mutant", "free mutant", "null"]
+Kind = Literal["gold", "rewrite", "mutant", "pinned mutant", "broken mutant", "free mutant", "attack", "null"]
 """Kind of a trial. A ``mutant`` is a changed scenario whose world has not been compared with the original one yet."""
 _NEVER_RIGHT = ("on_top", "goal_outside")
 """Operators whose mutants break what must hold in every scenario."""
@@ -77,6 +78,8 @@ def kind_of(trial: Trial) -> Kind | None:
     if after is None or before is None:
         return "broken mutant"
     changed = changed_facts(before, after)
+    if trial.operator in ATTACKS:
+        return "attack" if is_wrong(case, (before, after), changed, trial.operator) else None
     if trial.operator in _NEVER_RIGHT and not (trial.operator == "on_top" and case.overlap):
         return "pinned mutant"
     if touches(case, (before, after), changed, case.pins):
@@ -194,6 +197,8 @@ def _changed_words(
     for operator, what, fact, answer in mutants_of_answer(instance, gold, main):
         if _is_waived(instance, operator, what):
             left_out["waived"] += 1
+        elif fact == "attack":
+            yield Trial(case_id, gold.name, "attack", operator, what, instance, answer)
         elif fact in ("files", "edit") or fact in pinned:
             yield Trial(case_id, gold.name, "pinned mutant", operator, what, instance, answer)
         elif fact in ("reply", "replies") and main is not None:

@@ -92,7 +92,7 @@ class Corridor(OfBodies, ScenePredicate):
     width: Match
     """Accepted free widths [m], measured across the line at each section."""
     sections: Counted = 12
-    """Number of sections, evenly spaced from start to goal."""
+    """Least number of sections, evenly spaced from start to goal; with more than one no gap of a wall is missed."""
     direction: Quantity | None = None
     """Direction of the corridor [rad], if not that from start to goal."""
     length: Match | None = None
@@ -112,8 +112,9 @@ class Corridor(OfBodies, ScenePredicate):
             start, goal = (body.pose[0], body.pose[1]), _end(body)
             way = math.dist(start, goal)
             heading = math.atan2(goal[1] - start[1], goal[0] - start[0]) if self.direction is None else self.direction
-            for k in range(self.sections):
-                at = along(start, heading, way * k / max(1, self.sections - 1))
+            sections = self.sections if self.sections == 1 else max(self.sections, math.ceil(way / _LENGTH_STEP) + 1)
+            for k in range(sections):
+                at = along(start, heading, way * k / max(1, sections - 1))
                 width = _width(scene, at, heading)
                 if not matches(self.width, width, "length"):
                     seen = f"{show(width)} m" if width < _FAR else "no wall on one side"
