@@ -10,6 +10,7 @@
     gold: people           # a gold that the answer starts from; without one it starts from the given files
     replace: {old: new}    # what differs in the texts of the gold; each occurs there
     files: {name: text}    # further files
+    pictures: [name]       # pictures that it draws
     reply: Done.           # last message of the agent
     replies: [a, b]        # its messages after each turn, where the user writes several times
     slow: true             # grading takes more than a second
@@ -17,6 +18,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -24,9 +26,11 @@ import pytest
 import yaml
 from pydantic import BaseModel, ConfigDict
 
+from irsim_evals.cases.drawing import stand_ins
 from irsim_evals.cases.store import Instance, case_of, golds_of, instance_of
-from irsim_evals.grader.artefact import Answer
+from irsim_evals.grader.artefact import Answer, from_folder
 from irsim_evals.grader.grade import grade
+from irsim_evals.grader.material import write_files
 from tests.evals.conftest import failed, failures
 
 FILES = sorted((Path(__file__).parent / "attempts").glob("*.yaml"))
@@ -46,6 +50,7 @@ class Attempt(BaseModel):
     gold: str = ""
     replace: dict[str, str] = {}
     files: dict[str, str] = {}
+    pictures: list[str] = []
     reply: str | None = None
     replies: list[str] | None = None
     slow: bool = False
@@ -63,7 +68,8 @@ class Attempt(BaseModel):
             files = {name: text.replace(old, new) for name, text in files.items()}
         reply = start.reply if self.reply is None else self.reply
         replies = self.replies if self.replies is not None else [reply] if self.reply is not None else start.replies
-        return Answer("attempt", {**files, **self.files}, reply, tuple(replies), blobs=start.blobs)
+        blobs = {**start.blobs, **stand_ins(self.pictures)}
+        return Answer("attempt", {**files, **self.files}, reply, tuple(replies), blobs)
 
 
 def attempts() -> list[Any]:
@@ -75,9 +81,12 @@ def attempts() -> list[Any]:
 
 
 @pytest.mark.parametrize("attempt", attempts())
-def test_the_verdict_on_an_attempt_is_right(attempt: Attempt) -> None:
+def test_the_verdict_on_an_attempt_is_right(attempt: Attempt, tmp_path: Path) -> None:
     instance = attempt.instance()
-    verdict = grade(instance, attempt.answer(instance))
+    answer = attempt.answer(instance)
+    write_files(tmp_path, answer.files, answer.blobs)
+    read = from_folder(tmp_path)  # as the command reads it
+    verdict = grade(instance, replace(answer, files=read.files, blobs=read.blobs, others=read.others))
     assert verdict.strict == (attempt.truth == "right"), failures(verdict)
     assert set(attempt.fails) <= set(failed(verdict))
     assert attempt.truth == "wrong" or not attempt.fails
