@@ -187,6 +187,14 @@ class Workspace:
         return (str(name), None) if there else (None, text)
 
     @held
+    def stamp(self, name: str) -> tuple[int, int] | None:
+        """Time of the last change [ns] and size [bytes] of a file; None if there is no such file."""
+        if not self.has_file(name):
+            return None
+        about = (self.root / name).stat()
+        return about.st_mtime_ns, about.st_size
+
+    @held
     def has_file(self, name: str) -> bool:
         """Whether there is a file with a name."""
         return why_outside(name, self.root) is None and (self.root / name).is_file()

@@ -78,6 +78,31 @@ class Services:
     """Answers about the scenario language and bundled suites, which do not change while the server runs."""
     texts: RecentTexts = field(default_factory=RecentTexts)
     """Texts of scenarios that calls have given."""
+    done: dict[tuple[str, str, object], None] = field(default_factory=dict)
+    """Steps that were done with scenarios as they were then, so that no answer advises them again."""
+
+    def note(self, step: str, given: str) -> None:
+        """Remember that a step was done with a scenario as it is now.
+
+        Args:
+            step: The step, such as ``looked``.
+            given: From :meth:`given`.
+        """
+        self.done[self._step(step, given)] = None
+        while len(self.done) > _MAX_TEXTS:
+            del self.done[next(iter(self.done))]
+
+    def was_done(self, step: str, given: str) -> bool:
+        """Whether a step was done with a scenario that has not changed since."""
+        return self._step(step, given) in self.done
+
+    def _step(self, step: str, given: str) -> tuple[str, str, object]:
+        name = given.removeprefix("scenario_path=")
+        return step, name, self.workspace.stamp(name)
+
+    def is_there(self, name: str) -> bool:
+        """Whether a scenario can still be given: a file of the workspace, a text that is kept, or of a suite."""
+        return suite_of(name) is not None or self.texts.find(name) is not None or self.workspace.has_file(name)
 
     async def reference(self, task: str, argument: str, **arguments: Any) -> str:
         """Have a worker answer a question about the scenario language, unless the answer is known.

@@ -7,7 +7,7 @@ suite is meant (:func:`suite_of`); workers do the rest, which needs the engine.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -153,13 +153,16 @@ def check_finished(state: Mapping[str, Any]) -> None:
         raise failure("bad-argument", what, where="run_id", fix=fix)
 
 
-def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> dict[str, Any]:
+def episodes_table(
+    state: Mapping[str, Any], limit: int, cursor: str | None, is_there: Callable[[str], bool]
+) -> dict[str, Any]:
     """The episodes of a benchmark, those without success first, in the form of the tables of runs.
 
     Args:
         state: State of the job of a benchmark that has a result.
         limit: Greatest number of rows.
         cursor: ``next_cursor`` of the previous page.
+        is_there: Whether a scenario can still be given.
 
     Raises:
         ToolError: The cursor is invalid.
@@ -185,7 +188,7 @@ def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> 
         "every": 1,
         "next_cursor": str(shown) if shown < len(episodes) else None,
         "notes": [clean(f"{label} is {text}", 300) for text, label in labels.items() if label != text],
-        "again": call_to_repeat(result, episodes[start]) if rows else "",
+        "again": call_to_repeat(result, episodes[start], is_there) if rows else "",
     }
 
 
@@ -196,9 +199,17 @@ def policy_names(result: Mapping[str, Any]) -> dict[str, str]:
     return labels_of(result["behaviors"]) | {text: name for name, text in result.get("policies", {}).items()}
 
 
-def call_to_repeat(result: Mapping[str, Any], episode: Mapping[str, Any]) -> str:
-    """The call that runs an episode again; a scenario that was given as text is named by its id."""
+def call_to_repeat(result: Mapping[str, Any], episode: Mapping[str, Any], is_there: Callable[[str], bool]) -> str:
+    """The call that runs an episode again; a scenario that was given as text is named by its id.
+
+    Args:
+        result: The result of the benchmark.
+        episode: The episode.
+        is_there: Whether a scenario can still be given; if not, the answer says so.
+    """
     name, behavior = episode["scenario"], episode["behavior"]
+    if not result.get("suite") and not is_there(name):
+        return f"run_episode with the text of {clean(name, 200)!r}, which is not there any more, seed={episode['seed']}"
     name = f"{result['suite']}/{name}" if result.get("suite") else name
     steps = re.search(r" --steps (\d+)", result["reproduce"])
     words = ["run_episode", f"scenario_path={clean(name, 200)!r}", f"seed={episode['seed']}"]

@@ -29,7 +29,7 @@ async def test_a_text_is_sent_once(client: Caller, workspace: Path) -> None:
 async def test_next_names_the_id_of_a_text_and_never_the_text(client: Caller, workspace: Path) -> None:
     drawn = "robot: {distribution: {name: random}, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}"
     for text, arguments, said in (
-        (drawn + ", behavior: {name: dash}}\n", {}, "benchmark scenarios=['{}']"),
+        (drawn + ", behavior: {name: dash}}\n", {}, "run_episode scenario_path={} seeds=20"),
         (drawn + "}\n", {"max_steps": 5}, "run_episode scenario_path={} policy=dash."),
     ):
         ran = await client.data("run_episode", scenario_yaml=text, **arguments)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any, Literal
 
 import anyio
@@ -129,7 +129,7 @@ def tool(services: Services) -> StrictTool:
             raise
         if "error" in state:
             services.jobs.forget(job)  # the caller gets the error and no id
-        return answer(state)
+        return answer(state, services.is_there)
 
     return strict(
         benchmark, title="Compare policies", description=_DESCRIPTION, read_only=False, idempotent=True,
@@ -206,21 +206,22 @@ def _check_size(scenarios: int, policies: int, seeds: int) -> None:
         )
 
 
-def answer(state: dict[str, Any], detailed: bool = False) -> CallToolResult:
+def answer(state: dict[str, Any], is_there: Callable[[str], bool], detailed: bool = False) -> CallToolResult:
     """The result of the tools about the state of a job.
 
     Args:
         state: The state.
+        is_there: Whether a scenario can still be given, so that the next call may name it.
         detailed: With more metrics, and how the robots failed.
 
     Raises:
         ToolError: The job failed, or others have changed its files.
     """
     with readable(state["id"]):
-        return _answer(state, detailed)
+        return _answer(state, is_there, detailed)
 
 
-def _answer(state: dict[str, Any], detailed: bool) -> CallToolResult:
+def _answer(state: dict[str, Any], is_there: Callable[[str], bool], detailed: bool) -> CallToolResult:
     if "error" in state:
         raise as_failure(state["error"], None)
     report = Benchmark(
@@ -236,7 +237,7 @@ def _answer(state: dict[str, Any], detailed: bool) -> CallToolResult:
     elif "result" not in state:
         report.next = "No episode was completed; call benchmark again."
     else:
-        _fill(report, state, RESULT if state["status"] == "finished" else PARTIAL, detailed)
+        _fill(report, state, RESULT if state["status"] == "finished" else PARTIAL, is_there, detailed)
         report.done, report.total = state["done"], state["total"]
         if state["status"] != "finished":
             why, more = "", "call benchmark again for all"
@@ -247,7 +248,7 @@ def _answer(state: dict[str, Any], detailed: bool) -> CallToolResult:
     return CallToolResult(content=[text], structured_content=report.model_dump(exclude_none=True))
 
 
-def _fill(report: Benchmark, state: dict[str, Any], file: str, detailed: bool) -> None:
+def _fill(report: Benchmark, state: dict[str, Any], file: str, is_there: Callable[[str], bool], detailed: bool) -> None:
     result, timing = state["result"], state.get("timing")
     extra = [key for key in _SOMETIMES if any(row["metrics"][key]["n"] for row in result["rows"])]
     labels = policy_names(result)
@@ -271,7 +272,7 @@ def _fill(report: Benchmark, state: dict[str, Any], file: str, detailed: bool) -
         done = any(e["outcome"] == "success" for e in result["episodes"])
         report.next = "Every episode succeeded; compare times and paths." if done else _NO_ROOM
         return
-    report.next = f"To see why: {call_to_repeat(result, lost[0])} ({lost[0]['outcome']})."
+    report.next = f"To see why: {call_to_repeat(result, lost[0], is_there)} ({lost[0]['outcome']})."
 
 
 def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:

@@ -38,6 +38,7 @@ def tool(services: Services) -> StrictTool:
         if cancel:
             services.jobs.cancel(job_id)
         seconds = _CANCEL_SECONDS if cancel else wait_s
-        return answer(await services.jobs.wait(job_id, seconds, reporter(ctx, "episodes")), detailed)
+        state = await services.jobs.wait(job_id, seconds, reporter(ctx, "episodes"))
+        return answer(state, services.is_there, detailed)
 
     return strict(get_job, title="Wait for a job", description=_DESCRIPTION, read_only=False, idempotent=True)

@@ -74,7 +74,7 @@ def tool(services: Services) -> StrictTool:
         data: dict[str, Any]
         if job is not None:
             used = [name for name, value in {**asked, "from_step": from_step or None}.items() if value is not None]
-            data = _episodes(job, ["view"] * (view != "rows") + used, limit, cursor)
+            data = _episodes(services, job, ["view"] * (view != "rows") + used, limit, cursor)
         else:
             data = await services.run_job(
                 "inspect",
@@ -94,10 +94,13 @@ def tool(services: Services) -> StrictTool:
     return strict(inspect_run, title="Look into a run", description=_DESCRIPTION, read_only=True, idempotent=True)
 
 
-def _episodes(job: dict[str, Any], other: list[str], limit: int, cursor: str | None) -> dict[str, Any]:
+def _episodes(
+    services: Services, job: dict[str, Any], other: list[str], limit: int, cursor: str | None
+) -> dict[str, Any]:
     """The episodes of a benchmark.
 
     Args:
+        services: The services.
         job: State of its job.
         other: Names of given arguments that apply only to runs.
         limit: Greatest number of rows.
@@ -112,7 +115,7 @@ def _episodes(job: dict[str, Any], other: list[str], limit: int, cursor: str | N
         raise failure("bad-argument", what, where=other[0], fix=fix)
     check_finished(job)
     with readable(job["id"]):
-        return episodes_table(job, limit, cursor)
+        return episodes_table(job, limit, cursor, services.is_there)
 
 
 def _first_rows(data: dict[str, Any], cursor: str | None, most_characters: int) -> dict[str, Any]:

@@ -90,7 +90,10 @@ def tool(services: Services) -> StrictTool:
         else:
             answer = await services.run_job("run_snapshot", run_id, **what)
         given = None if run_id else services.given(scenario_path, scenario_yaml)
-        line = TextContent(type="text", text=_text(answer, run_id, given, services.limits.text))
+        ran = given is not None and services.was_done("ran", given)
+        if given is not None and "report" in answer and answer["scene"] is not None:
+            services.note("looked", given)
+        line = TextContent(type="text", text=_text(answer, run_id, given, services.limits.text, ran))
         if not return_image or answer["scene"] is None:
             return [line]
         return [line, ImageContent(type="image", data=answer["png"], mime_type="image/png")]
@@ -98,7 +101,7 @@ def tool(services: Services) -> StrictTool:
     return strict(render_snapshot, title="Draw a scenario", description=_DESCRIPTION, read_only=True, idempotent=True)
 
 
-def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: int) -> str:
+def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: int, ran: bool) -> str:
     """One line about the picture and, if the scenario was checked, the findings and a table of its objects.
 
     Args:
@@ -106,6 +109,7 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
         run_id: The run that it shows; None for a scenario.
         given: Argument that gives the scenario again; None for a run.
         most: Greatest number of characters.
+        ran: Whether the scenario was run as it is now.
     """
     if "report" not in answer:
         return _line(answer["scene"], run_id)
@@ -116,13 +120,17 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
     labels = {robot["name"]: robot["label"] for robot in answer["scene"]["robots"]}
     table = scene_lines(answer["table"], labels, answer["scene"]["seed"])
     first = "If the picture is right" if not report.issues else "Fix what is not meant, then"
-    report.next = f"{first}{',' if not report.issues else ''} run_episode {given}."
+    report.next = f"{first}{',' if not report.issues else ''} run_episode {given} seeds=3."
     if any(item["code"] == "no-behavior" for item in answer["report"]["findings"]):
         name = str(given).removeprefix("scenario_path=")
         report.next = (
-            f"{report.next.removesuffix('.')} policy=dash, compare policies with benchmark scenarios=[{name!r}] "
-            "policies=[...], or drive it by a program."
+            f"{report.next.removesuffix(' seeds=3.')} policy=dash, compare policies with benchmark "
+            f"scenarios=[{name!r}] policies=[...], or drive it by a program."
         )
+    if ran:
+        report.next = "It has been run as it is: change it, or report what the run has shown."
+    if not answer["scene"]["robots"]:
+        report.next = f"{first}{',' if not report.issues else ''} it is done: without robots there is nothing to run."
     head, *findings, advice = text_of(report).splitlines()
     line = _line(answer["scene"], run_id, brief=True, passages=answer["table"]["passages"])
     return "\n".join([line, head, *findings, *table, advice])

@@ -94,6 +94,7 @@ def tool(services: Services) -> StrictTool:
             perturb=perturb,
             until=until,
         )
+        services.note("ran", services.given(scenario_path, scenario_yaml))
         if several:
             return _of_seeds(data, services, services.given(scenario_path, scenario_yaml), response_format)
         given = services.given(scenario_path, scenario_yaml)
@@ -237,8 +238,7 @@ def _advice(result: RunResult, given: str) -> str:
             again = f"lower step_time, or set world.contacts: swept, and run_episode {given} again"
             look = "" if result.run_id is None else f" after inspect_run{run} view=collisions"
             return f"Do not trust this success: a robot touched something between two steps; {again}{look}."
-        name = given.removeprefix("scenario_path=")
-        more = f"; try other seeds with benchmark scenarios=[{name!r}]" if result.random else ""
+        more = f"; try other seeds: run_episode {given} seeds=20" if result.random else ""
         if any(robot.laps is not None for robot in result.robots) and result.until == "done":
             more = f"; to see it patrol on, run_episode {given}{seed} until=time_limit{more}"
         return f"See it with render_snapshot{run} {_STRIP}{more}."

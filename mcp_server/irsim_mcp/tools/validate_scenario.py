@@ -94,9 +94,11 @@ def tool(services: Services) -> StrictTool:
             simulate=simulate,
             **services.base(base),
         )
-        report = report_of(data, max_issues, response_format == "detailed", services.limits.text)
-        if report.valid:
-            report.next = f"{report.next.removesuffix('.')} {services.given(scenario_path, scenario_yaml)}."
+        given = services.given(scenario_path, scenario_yaml)
+        looked = services.was_done("looked", given)
+        report = report_of(data, max_issues, response_format == "detailed", services.limits.text, looked)
+        if report.valid and report.next.endswith(_CALLS):
+            report.next = f"{report.next} {given}."
         text = TextContent(type="text", text=text_of(report))
         if response_format == "json":
             text = json_answer(data, services.limits.text, "fix the first problems, or use response_format=detailed")
@@ -107,7 +109,27 @@ def tool(services: Services) -> StrictTool:
     )
 
 
-def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: int) -> Report:
+_CALLS = ("render_snapshot", "run_episode")
+"""Tools that the advice on a valid scenario may name."""
+
+
+def _next_of_valid(data: dict[str, Any], looked: bool) -> str:
+    """What to do next with a valid scenario: not what has been done, nor a run without robots."""
+    runs = data["counts"].get("robots", 0) > 0
+    steps = [*["look at it with render_snapshot"] * (not looked), *["run_episode"] * runs]
+    then = ", then ".join(steps) or "nothing is left to do: there are no robots to run"
+    tail = "" if runs or not steps else " (there are no robots to run)"
+    if data["warnings"]:
+        tried = " and what dry_run reports" if _dry_run_has_problems(data) else ""
+        return f"Check whether the warnings{tried} are intended{tail}, {then}"
+    if _dry_run_has_problems(data):
+        return f"It is valid, but check whether all that dry_run reports is intended{tail}; {then}"
+    if tail:
+        return f"There are no robots to run; {then}"
+    return then if looked and runs else f"{then[:1].upper()}{then[1:]}"
+
+
+def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: int, looked: bool = False) -> Report:
     """The result of the tool.
 
     Args:
@@ -115,6 +137,7 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
         most: Greatest number of issues.
         detailed: With hints, columns and all allowed values.
         most_characters: Greatest number of characters of all issues.
+        looked: Whether the scenario has been drawn as it is.
     """
     few = data["valid"] and data["hints"] <= _MAX_SHOWN_HINTS
     findings = [item for item in data["findings"] if detailed or few or item["severity"] != "hint"]
@@ -132,13 +155,8 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
         errors = {item["code"] for item in data["findings"] if item["severity"] == "error"}
         fixable = "Apply the fixes and validate again; lookup explains a code or a key."
         advice = _GAPS if errors == {"not-yet-simulated"} else fixable
-    elif data["warnings"]:
-        advice = "Check whether the warnings{} are intended, look at it with render_snapshot, then run_episode."
-        advice = advice.format(" and what dry_run reports" if _dry_run_has_problems(data) else "")
-    elif _dry_run_has_problems(data):
-        advice = "It is valid, but check whether all that dry_run reports is intended; look with render_snapshot."
     else:
-        advice = "Look at it with render_snapshot, then run_episode."
+        advice = _next_of_valid(data, looked)
     return Report(
         valid=data["valid"],
         summary=summary,

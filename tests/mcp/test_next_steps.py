@@ -1,0 +1,59 @@
+"""What answers say to do next: never a step that was just done, a file that is gone, or a run without robots."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.mcp.conftest import ROOM, Caller, connected
+
+pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
+
+EMPTY = "world: {width: 5, height: 5, time_limit: 1}\n"
+
+
+def last(text: str) -> str:
+    return text.splitlines()[-1]
+
+
+async def test_what_was_done_with_a_file_as_it_is_is_not_advised_again(workspace: Path) -> None:
+    file = workspace / "room.yaml"
+    file.write_text(ROOM, encoding="utf-8")
+    given = {"scenario_path": "room.yaml"}
+    async with connected(workspace) as client:
+        checked = last(await client.text("validate_scenario", **given))
+        assert "render_snapshot" in checked
+        assert "run_episode" in checked
+        seen = last(await client.text("render_snapshot", **given, return_image=False))
+        assert "run_episode scenario_path=room.yaml seeds=3" in seen
+        checked = last(await client.text("validate_scenario", **given))
+        assert "render_snapshot" not in checked
+        assert "run_episode scenario_path=room.yaml" in checked
+        await client.data("run_episode", **given)
+        seen = last(await client.text("render_snapshot", **given, return_image=False))
+        assert "run_episode" not in seen
+        file.write_text(ROOM + "# changed\n", encoding="utf-8")
+        seen = last(await client.text("render_snapshot", **given, return_image=False))
+        assert "run_episode scenario_path=room.yaml" in seen
+
+
+async def test_a_world_without_robots_is_not_to_be_run(client: Caller) -> None:
+    for tool in ("validate_scenario", "render_snapshot"):
+        advice = last(await client.text(tool, scenario_yaml=EMPTY))
+        assert "run_episode" not in advice
+        assert "no robots" in advice or "without robots" in advice
+
+
+async def test_a_file_that_is_gone_is_not_named_as_the_next_scenario(workspace: Path) -> None:
+    file = workspace / "still.yaml"
+    file.write_text(ROOM.replace("    behavior: {name: dash}\n", ""), encoding="utf-8")
+    async with connected(workspace) as client:
+        done = await client.data("benchmark", scenarios=["still.yaml"], seeds=1, max_steps=5)
+        assert "run_episode scenario_path='still.yaml'" in done["next"]
+        file.unlink()
+        again = await client.data("get_job", job_id=done["job_id"])
+        assert "scenario_path" not in again["next"]
+        assert "still.yaml" in again["next"]
+        table = await client.text("inspect_run", run_id=done["job_id"])
+        assert "scenario_path" not in last(table)
