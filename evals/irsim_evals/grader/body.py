@@ -47,7 +47,7 @@ class GradedBody:
     Attributes:
         index: Its row in the simulation.
         record: Its record in the resolved scenario.
-        static: Whether it never moves.
+        static: Whether it never moves, as obstacles without a behavior.
         kinematics: Name of its drive; None for a static object.
         behavior: Name of the behavior that moves it, its own or its group's.
         options: Options of that behavior.
@@ -178,7 +178,7 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> GradedBody:
     return GradedBody(
         index=view.index,
         record=record,
-        static=record.static or kinematics is None,
+        static=record.static or kinematics is None or (record.role == "obstacle" and options is None),
         kinematics=kinematics,
         behavior=None if options is None else str(options.name),
         options={} if options is None else options.model_dump(mode="json"),

@@ -25,7 +25,7 @@ _TOUCH = 1e-6
 """Depth [m] up to which two bodies count as touching."""
 _MOVED = 0.05
 """Distance [m] that a body must come to count as moving."""
-_NEAR, _NEAR_SHARE = 1.0, 0.2
+_NEAR, _NEAR_SHARE = 0.5, 0.05
 """A goal may count as reached at this distance [m], or at this share of the way to it, whichever is more."""
 _MAX_DELAY = 60.0
 """Time [s] after which a body that has not come or not started takes no part, if there is no time limit."""
@@ -44,7 +44,8 @@ def overlaps(material: Material, scene: GradedScene) -> list[tuple[GradedBody, s
     footprints = np.array([body.footprint for body in bodies], dtype=object)
     for i, j in shapely.STRtree(footprints).query(footprints, predicate="intersects").T.tolist():
         a, b = bodies[i], bodies[j]
-        if i < j and not (a.static and b.static) and _depth(a, b) > _TOUCH and len(pairs) < _MAX_PAIRS:
+        fixed = a.static and b.static and not (a.footprint.covers(b.footprint) or b.footprint.covers(a.footprint))
+        if i < j and not fixed and _depth(a, b) > _TOUCH and len(pairs) < _MAX_PAIRS:
             pairs.append((b if not b.static else a, a.name if not b.static else b.name))
     terrain = scene.terrain_area
     for body in bodies:
@@ -75,12 +76,14 @@ def check_scene(material: Material, scene: GradedScene, *, overlap: bool = True)
     def outside(x: float, y: float) -> bool:
         return not (x0 - 1e-9 <= x <= x1 + 1e-9 and y0 - 1e-9 <= y <= y1 + 1e-9)
 
+    there = shapely.box(x0, y0, x1, y1)
     starts = [(body, list(body.pose[:2])) for body in moving if outside(body.pose[0], body.pose[1])]
+    starts += [(body, list(body.position)) for body in scene.bodies if not there.intersects(body.footprint)]
     goals = [(body, goal[:2]) for body in moving for goal in body.goals if outside(goal[0], goal[1])]
     out = starts + goals
     marks = [Mark(points=[list(point)], text=body.name) for body, point in out]
     key = "state" if starts else "goal"
-    outcomes = [_outcome("inside-world", "every robot and goal lies in the world", out, "all", key, scene.seed, marks)]
+    outcomes = [_outcome("inside-world", "everything lies in the world", out, "all", key, scene.seed, marks)]
     restless = [
         (body, f"never goes slower than {body.slowest:g} m/s")
         for body in scene.bodies
@@ -137,9 +140,9 @@ def check_goals(scene: GradedScene) -> Outcome:
     bodies = [b for b in scene.bodies if not b.static and b.behavior is not None and b.goals and not b.record.wander]
     ways = [(body, math.dist(body.pose[:2], body.goals[-1][:2])) for body in bodies]
     odd = [
-        (body, f"has arrived {body.record.goal_threshold:g} m away")
+        (body, f"has arrived nearer than {body.record.goal_threshold:g} m")
         for body, way in ways
-        if body.record.goal_threshold > max(_NEAR, _NEAR_SHARE * way)
+        if not 0 < body.record.goal_threshold <= max(_NEAR, _NEAR_SHARE * way)
     ]
     odd += [
         (body, "is at its goal from the start")

@@ -63,8 +63,8 @@ class GradedScene:
 
     @property
     def solids(self) -> list[GradedBody]:
-        """Bodies that never move and that others cannot pass: obstacles which nothing drives stand still, too."""
-        return [body for body in self.bodies if not body.passable and (body.static or _stands(body))]
+        """Bodies that never move and that others cannot pass."""
+        return [body for body in self.bodies if not body.passable and body.static]
 
     @cached_property
     def solid(self) -> Any:
@@ -92,12 +92,12 @@ class GradedScene:
     @cached_property
     def things(self) -> list[Any]:
         """Parts and pose of everything solid, as the core takes them."""
-        solid = {body.index for body in self.solids}
+        poses = {body.index: list(body.pose) for body in self.solids}  # the simulation has none of what comes late
         simulation = self.env.simulation
         return [
-            (outline(simulation.state, view.row).core(), simulation.pose[view.row].tolist())
+            (outline(simulation.state, view.row).core(), poses.get(view.index, simulation.pose[view.row].tolist()))
             for view in self._views
-            if view.index in solid or view in self.terrain_views
+            if view.index in poses or view in self.terrain_views
         ]
 
     @cached_property
@@ -142,10 +142,6 @@ class GradedScene:
             terrain = core.Terrain(FAR, [*self.things, *discs]) if discs else self.terrain
             self._paths[key] = core.Clearance(terrain, cells)
         return self._paths[key], _HALF_DIAGONAL * max(width / nx, height / ny)
-
-
-def _stands(body: GradedBody) -> bool:
-    return body.role == "obstacle" and body.behavior is None
 
 
 def open_scene(scenario: ResolvedScenario, seed: int) -> GradedScene:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AnswerPredicate", "EpisodePredicate", "Observation", "OfBodies", "Predicate", "ScenePredicate", "SeedsPredicate",
-    "judged", "measured", "middle", "register", "registered", "summary",
+    "judged", "measured", "middle", "register", "registered", "summary", "travellers",
 ]  # fmt: skip
 
 _MAX_NAMED = 4
@@ -114,6 +114,19 @@ class AnswerPredicate(Predicate):
     def observe(self, material: Material) -> Observation:
         """Look at files and words."""
         raise NotImplementedError
+
+
+def travellers(predicate: OfBodies, material: Material, scene: GradedScene) -> list[GradedBody]:
+    """The bodies of the selection of a predicate.
+
+    Raises:
+        LookupError: One of them has no goal.
+    """
+    bodies = material.bodies(scene, predicate.of)
+    for body in bodies:
+        if body.goal is None:
+            raise LookupError(f"{body.name} has no goal")
+    return bodies
 
 
 def judged(

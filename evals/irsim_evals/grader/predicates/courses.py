@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
 
+_LEFT = 0.05
+"""Distance [m] from its start at which a body has left it."""
+
 
 @register("visits")
 class Visits(OfBodies, EpisodePredicate):
@@ -216,6 +219,8 @@ class Crosses(OfBodies, EpisodePredicate):
     """Accepted numbers of bodies that cross."""
     ahead: bool = True
     """Only crossings between the body and its goal count."""
+    driving: bool = False
+    """Only crossings count after the body has left its start."""
     direction: Literal["right_to_left", "left_to_right"] | None = None
     """Only those count that cross so, seen by the body."""
     spread: Quantity = 0.0
@@ -239,7 +244,7 @@ class Crosses(OfBodies, EpisodePredicate):
             left, far = unit[0] * offset[:, 1] - unit[1] * offset[:, 0], offset @ unit
             for row in np.flatnonzero((left[1:] > 0) != (left[:-1] > 0)).tolist():
                 way = "right_to_left" if left[row + 1] > 0 else "left_to_right"
-                ahead = own[row] < far[row] <= length
+                ahead = own[row] < far[row] <= length and (own[row] > _LEFT or not self.driving)
                 if (ahead or not self.ahead) and self.direction in (None, way):
                     times.append(float(episode.trace.time[row]))
                     break

@@ -91,7 +91,7 @@ def closest(episode: GradedEpisode, a: GradedBody, b: GradedBody) -> float:
 
 
 def _moved(body: GradedBody, pose: Any) -> Any:
-    if body.static:
+    if body.kinematics is None:
         return body.footprint
     x, y, heading = body.pose
     turned = shapely.affinity.rotate(body.footprint, float(pose[2]) - heading, origin=(x, y), use_radians=True)

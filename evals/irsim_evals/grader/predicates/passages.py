@@ -10,7 +10,7 @@ import shapely.affinity
 
 from irsim_evals.grader.matching import Counted, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register, travellers
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
@@ -102,7 +102,7 @@ class Corridor(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure the sections."""
-        bodies = [body for body in material.bodies(scene, self.of) if body.goal is not None]
+        bodies = travellers(self, material, scene)
         expected = f"a corridor {self.width.words()} m wide" + (
             f", {self.length.words()} m long" if self.length is not None else ""
         )
@@ -128,7 +128,7 @@ class Corridor(OfBodies, ScenePredicate):
                 return Observation(False, expected, f"walls on both sides for {show(total)} m")
             if self.start_within is not None and max(back, front) > self.start_within * total + 1e-6:
                 return Observation(False, expected, f"{show(max(back, front))} m of it lie before or behind the way")
-        return Observation(True, expected, f"{self.sections} sections")
+        return Observation(True, expected, "so it is")
 
     def _reach(self, scene: GradedScene, start: tuple[float, float], heading: float) -> float:
         """How far the walls go on from a place [m]."""
@@ -199,7 +199,7 @@ class Pocket(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Go in and measure."""
-        bodies = [body for body in material.bodies(scene, self.of) if body.goal is not None]
+        bodies = travellers(self, material, scene)
         expected = f"a pocket {self.width.words()} m wide and {self.depth.words()} m deep on the way"
         if not bodies:
             return Observation(False, expected, f"{self.of}: no body with a goal")

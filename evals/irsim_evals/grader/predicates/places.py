@@ -120,7 +120,7 @@ class Near(OfBodies, ScenePredicate):
         if self.place is not None:
             shapes = [shapely.Point(self.place)]
         if not shapes:
-            return math.inf
+            return None
         distances = [float(shapely.distance(at, shape)) for shape in shapes]
         return max(distances) if self.farthest else min(distances)
 

@@ -11,7 +11,15 @@ import shapely
 from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, middle, register
+from irsim_evals.grader.predicates._base import (
+    Observation,
+    OfBodies,
+    ScenePredicate,
+    judged,
+    middle,
+    register,
+    travellers,
+)
 from irsim_evals.grader.selection import Selection
 
 if TYPE_CHECKING:
@@ -33,7 +41,7 @@ class Ways(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Compare all pairs."""
-        bodies = _with_goals(self, material, scene)
+        bodies = travellers(self, material, scene)
         words = []
         if self.angle is not None:
             words.append(f"angle {self.angle.words()} rad")
@@ -58,10 +66,6 @@ def _direction(body: GradedBody) -> float:
     return math.atan2(goal[1] - body.pose[1], goal[0] - body.pose[0])
 
 
-def _with_goals(predicate: OfBodies, material: Material, scene: GradedScene) -> list[GradedBody]:
-    return [body for body in material.bodies(scene, predicate.of) if body.goal is not None]
-
-
 def _line(body: GradedBody) -> shapely.LineString:
     """The straight line from the start of a body to its last goal."""
     return shapely.LineString([body.pose[:2], (body.goal or [*body.pose])[:2]])
@@ -83,9 +87,7 @@ class LineOfSight(OfBodies, ScenePredicate):
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Draw the lines."""
         expected = f"from each of {self.of} to its goal the view is {'clear' if self.clear else 'blocked'}"
-        clear = [
-            (body, not shapely.intersects(scene.solid, _line(body))) for body in _with_goals(self, material, scene)
-        ]
+        clear = [(body, not shapely.intersects(scene.solid, _line(body))) for body in travellers(self, material, scene)]
         wrong = [(body, value) for body, value in clear if value != self.clear]
         return judged(expected, clear, wrong, "goal", said="clear for ", marks=[_mark(body) for body, _ in wrong])
 
@@ -103,7 +105,7 @@ class LinePasses(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure."""
-        bodies, others = _with_goals(self, material, scene), material.bodies(scene, self.by)
+        bodies, others = travellers(self, material, scene), material.bodies(scene, self.by)
         expected = f"the way of {self.of} passes the middle of {self.by} at {self.distance.words()} m"
         if not bodies or not others:
             return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.by}: {len(others)}")
@@ -130,7 +132,7 @@ class Reachable(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Search for paths."""
-        bodies = [body for body in material.bodies(scene, self.of) if body.goals or self.to is not None]
+        bodies = travellers(self, material, scene) if self.to is None else material.bodies(scene, self.of)
         closed = "" if self.plug is None else f" with the gap at ({self.plug[0]:g}, {self.plug[1]:g}) closed"
         target = "its goal" if self.to is None else f"({self.to[0]:g}, {self.to[1]:g})"
         expected = f"each of {self.of} {'can' if self.possible else 'cannot'} get to {target}{closed}"

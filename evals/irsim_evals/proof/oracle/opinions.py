@@ -110,7 +110,8 @@ class _Look:
             if key == "role":
                 fits = thing.section == wanted
             elif key == "static":
-                fits = (bool(view.static) or "kinematics" not in thing.entry) == wanted
+                driven = thing.section == "robot" or {"behavior", "group_behavior"} & set(thing.entry)
+                fits = (bool(view.static) or "kinematics" not in thing.entry or not driven) == wanted
             elif key == "passable":
                 fits = bool(thing.entry.get("unobstructed", False)) == wanted
             elif key == "kinematics":
@@ -228,14 +229,12 @@ class _Look:
         point: Point = (goals[-1][0], goals[-1][1]) if goals else thing.middle
         if said.place is not None:
             distances = [to_point(thing, said.place) if said.what == "footprint" else math.dist(point, said.place)]
-        elif said.what == "position":
-            distances = [math.dist(point, other.middle) for other in rest]
-        elif said.what == "goal":
-            distances = [to_point(other, point) for other in rest]
-        else:
+        elif said.what == "footprint":
             distances = [max(0.0, distance_between(thing, other)) for other in rest]
+        else:
+            distances = [to_point(other, point) if said.edge else math.dist(point, other.middle) for other in rest]
         if not distances:
-            return math.inf
+            return None
         return max(distances) if said.farthest else min(distances)
 
     def spacing(self, said: Any, _: float) -> bool:
@@ -254,14 +253,18 @@ class _Look:
         return self.of("solids")
 
     def line_of_sight(self, said: Any, _: float) -> bool:
-        ways = [(thing.at[:2], goals[-1][:2]) for thing in self.of(said.of) if (goals := self._goals(thing))]
+        ways = [(thing.at[:2], self._goals(thing)[-1][:2]) for thing in self.of(said.of) if self._goals(thing)]
+        if len(ways) < len(self.of(said.of)):
+            return False
         clear = [not any(blocked(solid, start, tuple(goal)) for solid in self._solids()) for start, goal in ways]
         return bool(clear) and all(one == said.clear for one in clear)
 
     def reachable(self, said: Any, _: float) -> bool:
         if said.plug is not None or getattr(said, "to", None) is not None:
             raise _Unknown
-        things = [thing for thing in self.of(said.of) if self._goals(thing)]
+        things = self.of(said.of)
+        if not said.possible or not all(self._goals(thing) for thing in things):
+            raise _Unknown
         world = self.data.get("world") or {}
         x0, y0 = world.get("offset") or [0.0, 0.0]
         bounds = (x0, y0, x0 + world.get("width", 10), y0 + world.get("height", 10))
