@@ -12,18 +12,21 @@ from irsim.cli.findings import print_diagnostics
 from irsim.cli.guard import INVALID
 from irsim.cli.output import console, print_json
 from irsim.common.text import clean, plural
-from irsim.diagnostics.diagnostic import Diagnostic
+from irsim.diagnostics.diagnostic import Diagnostic, Severity
 from irsim.scenario.yaml.document import load_path, text_of
 from irsim.validation.validate import report
 from irsim_evals.cases.reading import CaseError
 from irsim_evals.cases.store import Instance, Store, case_files, golds_of, instance_of
 from irsim_evals.cli.choice import CasesFolder, GoldsFolder, chosen, store_of
 from irsim_evals.grader.limited import grade_answer
+from irsim_evals.proof.idle import idle_assertions
 
 __all__ = ["MIN_GOLDS", "check"]
 
 MIN_GOLDS = 2
 """Number of golds that each case has at least."""
+_IDLE = {"empty_holds": "an empty world fulfils it", "unbroken": "no change of the right answers breaks it"}
+"""Meaning of what is reported of assertions that tell nothing."""
 _MAX_LISTED = 10
 """Number of files up to which those that are right are listed."""
 _MAX_FAILED = 3
@@ -96,15 +99,21 @@ def _look(path: Path, store: Store | None) -> tuple[list[Diagnostic], str]:
 def _problems_of_golds(instance: Instance, path: Path, store: Store) -> Iterator[Diagnostic]:
     golds, place = golds_of(instance, store), store.golds / instance.case.id
 
-    def problem(message: str, fix: str) -> Diagnostic:
-        return Diagnostic("invalid-value", "error", (), message, fix=fix, file=str(path))
+    def problem(message: str, fix: str, severity: Severity = "error") -> Diagnostic:
+        return Diagnostic("invalid-value", severity, (), message, fix=fix, file=str(path))
 
     if len(golds) < MIN_GOLDS:
         message = f"{place} holds {plural(len(golds), 'right answer')}, and each case needs {MIN_GOLDS} different ones"
         yield problem(message, f"write {place}/NAME/scenario.yaml")
+    right = True
     for gold in golds:
         verdict = grade_answer(instance, gold)
         if not verdict.strict:
+            right = False
             failed = [f"{one.assertion}: {clean(one.observed, 200)}" for one in verdict.failed()[:_MAX_FAILED]]
             message = f"{place / gold.name} does not pass: {'; '.join(failed)}"
             yield problem(message, "change the answer or the assertion")
+    for name, kind in idle_assertions(instance, golds) if right else ():
+        yield problem(
+            f"assertion {name}: {_IDLE[kind]} ({kind})", "ask for something that a wrong answer lacks", "warning"
+        )

@@ -31,7 +31,7 @@ from irsim_evals.proof.mutants import mutants_of, mutants_of_answer, mutants_of_
 from irsim_evals.proof.operators import Data, dump
 from irsim_evals.proof.rewrites import rewrites_of
 
-__all__ = ["Kind", "Trial", "kind_of", "scene_of", "trials_of"]
+__all__ = ["Kind", "Trial", "changes_of", "kind_of", "scene_of", "trials_of"]
 
 Kind = Literal["gold", "rewrite", "mutant", "pinned mutant", "broken mutant", "free mutant", "attack", "null"]
 """Kind of a trial. A ``mutant`` is a changed scenario whose world has not been compared with the original one yet."""
@@ -140,13 +140,15 @@ def trials_of(
             yield Trial(case_id, gold.name, "gold", "gold", what, instance, gold)
     instance = case_of(case_id, None, store)
     for gold in golds_of(instance, store):
-        yield from _changed(case_id, instance, gold, left_out, keep)
+        yield from changes_of(instance, gold, left_out, keep)
     yield from (trial for trial in _null(case_id, instance) if keep())
 
 
-def _changed(
-    case_id: str, instance: Instance, gold: Answer, left_out: Counter[str], keep: Callable[[], bool]
+def changes_of(
+    instance: Instance, gold: Answer, left_out: Counter[str], keep: Callable[[], bool] = lambda: True
 ) -> Iterator[Trial]:
+    """Rewrites, mutants and attacks of a right answer; for the arguments see :func:`trials_of`."""
+    case_id = instance.case.id
     scenario = find_scenario(gold, instance.case.files)
     words = _changed_words(case_id, instance, gold, scenario[0] if scenario else None, left_out)
     yield from (trial for trial in words if keep())
