@@ -24,6 +24,7 @@ from irsim_evals.grader.grade import grade
 from irsim_evals.grader.outcome import NOT_REACHED
 from irsim_mcp.server import build_server
 from tests.evals.conftest import EVALS, ROOT, SKILLS, failures, irsim_evals
+from tests.evals.texts import replay_transcript
 from tests.warm import warm
 
 ANSWERS: dict[str, dict[str, dict[str, Any]]] = yaml.safe_load(
@@ -271,23 +272,11 @@ def lines(path: Path) -> tuple[dict[str, Any], list[dict[str, Any]]]:
 @pytest.mark.slow(8)
 @pytest.mark.parametrize("path", TRANSCRIPTS, ids=lambda path: path.stem)
 async def test_a_transcript_still_leads_to_its_end(path: Path, tmp_path: Path) -> None:
-    asked, steps = lines(path)
-    workspace = tmp_path / "workspace"
-    workspace.mkdir()
-    for name, text in case_of(asked["case"]).case.files.items():
-        (workspace / name).write_text(text, encoding="utf-8")
-    wrong = []  # told after the client is closed, which would wrap it
-    async with Client(build_server(workspace)) as client:
-        call = Caller(client)
-        for step in steps:
-            if "file" in step:
-                (workspace / step["file"]).write_text(step["text"], encoding="utf-8")
-                continue
-            text, failed = await call(step["tool"], step["arguments"])
-            if failed or not all(expected in text for expected in step["expect"]):
-                wrong.append({**step, "text": text})
-    assert wrong == []
-    assert {name: (workspace / name).read_text(encoding="utf-8") for name in asked["answer"]} == answer_of(path)
+    async with Client(build_server(tmp_path)) as client:
+        done = await replay_transcript(path, client, tmp_path)
+    assert done.drift == []
+    left = {name: (tmp_path / name).read_text(encoding="utf-8") for name in lines(path)[0]["answer"]}
+    assert left == answer_of(path)
 
 
 def answer_of(path: Path) -> dict[str, str]:
