@@ -8,6 +8,7 @@ import pytest
 
 from irsim_evals.grader.episode import run_episode
 from irsim_evals.grader.material import Material, with_speeds
+from irsim_evals.grader.predicates._base import registered
 from tests.evals.conftest import episode, seen, world
 
 DRIVE = "kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, behavior: {name: dash}"
@@ -52,16 +53,16 @@ def test_an_aisle_is_one_way(robot: str, direction: Any, number: int, passes: bo
 @pytest.mark.parametrize(
     ("regions", "avoids", "observed"),
     [
-        ([[4, 4, 6, 6], [8, 4, 10, 6]], [], "all 1"),
-        ([[8, 4, 10, 6], [4, 4, 6, 6]], [], "does not come to [4, 4, 6, 6] after the others"),
-        ([[4, 7, 6, 9]], [], "does not come to [4, 7, 6, 9]"),
-        ([[8, 4, 10, 6]], [[4, 4, 6, 6]], "comes into [4, 4, 6, 6]"),
+        ([[4, 4, 6, 6], [8, 4, 10, 6]], [], "so it is"),
+        ([[8, 4, 10, 6], [4, 4, 6, 6]], [], "does not come to (4, 4, 6, 6) after 1 visits"),
+        ([[4, 7, 6, 9]], [], "does not come to (4, 7, 6, 9)"),
+        ([[8, 4, 10, 6]], [[4, 4, 6, 6]], "comes to (4, 4, 6, 6)"),
     ],
 )
 def test_rooms_are_entered_in_their_order(regions: Any, avoids: Any, observed: str) -> None:
-    observation = seen(hall(EAST), "enters", {"of": "robots", "regions": regions, "avoids": avoids}, 12)
+    observation = seen(hall(EAST), "visits", {"of": "robots", "places": regions, "avoids": avoids}, 12)
     assert observed in observation.observed
-    assert observation.passed == (observed == "all 1")
+    assert observation.passed == (observed == "so it is")
 
 
 @pytest.mark.parametrize(
@@ -76,8 +77,8 @@ def test_rooms_are_entered_in_their_order(regions: Any, avoids: Any, observed: s
 )
 def test_a_line_is_crossed_on_time(robots: list[str], times: list[float], passes: bool) -> None:
     material = hall(*(robot.replace("radius: 0.2}", "radius: 0.2}, unobstructed: true") for robot in robots))
-    table = {"of": "robots", "start": [5, 0], "end": [5, 10], "times": times, "tol": 0.2}
-    assert seen(material, "timetable", table, 12).passed == passes
+    table = {"of": "robots", "line": [[5, 0], [5, 10]], "times": times, "tol": 0.2}
+    assert seen(material, "crosses", table, 12).passed == passes
 
 
 @pytest.mark.parametrize(("share", "passes"), [({"ge": 0.3, "le": 0.5}, True), ({"ge": 0.9}, False)])
@@ -124,3 +125,45 @@ def test_who_goes_round_for_ever_never_arrives_for_good(behavior: str, share: in
     material = world(f"robot: {robot}")
     assert seen(material, "arrive", {"of": "robots", "share": 1}, 8).passed
     assert seen(material, "arrive", {"of": "robots", "share": share, "for_good": True}, 8).passed == passes
+
+
+@pytest.mark.parametrize(
+    ("robots", "keys", "passes"),
+    [
+        (
+            [EAST],
+            {"number": 1, "direction": "left_to_right"},
+            True,
+        ),
+        ([EAST], {"number": 1, "direction": "right_to_left"}, False),
+        ([WEST], {"number": 1, "direction": "right_to_left"}, True),
+        ([EAST, NORTH], {"number": 1}, True),
+        ([EAST], {"number": 2}, False),
+        ([EAST], {"number": 1, "line": [[5, 6], [5, 9]]}, False),  # passes beside the end of the line
+        (
+            [EAST, NORTH.replace("1, 0]", "3, 0]")],
+            {"number": 1, "line": None, "way_of": "north", "direction": "left_to_right"},
+            False,
+        ),  # behind it
+        (
+            [EAST, NORTH],
+            {"number": 1, "line": None, "way_of": "north", "direction": "left_to_right", "ahead": False},
+            True,
+        ),
+        ([EAST], {"number": 1, "line": None, "way_of": "nobody"}, False),
+    ],
+)
+def test_a_line_is_crossed_in_a_direction(robots: list[str], keys: dict[str, Any], passes: bool) -> None:
+    text = ", ".join(robot.replace("0.2}", "0.2}, unobstructed: true") for robot in robots)
+    ways = {"north": {"inside": [4, 0, 6, 4]}, "nobody": {"named": "nobody"}}
+    material = world(f"world: {{width: 10, height: 10}}\nrobot: [{text}]\n", **ways)
+    line = {"of": "robots", "line": [[5, 4], [5, 6]], **keys}
+    assert seen(material, "crosses", line, 12).passed == passes
+
+
+@pytest.mark.parametrize(
+    "keys", [{"number": 1}, {"line": [[0, 0], [1, 1]]}, {"line": [[0, 0], [1, 1]], "way_of": "all"}]
+)
+def test_a_crossing_needs_one_line_and_a_number(keys: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=r"give either|say how many"):
+        registered()["crosses"].model_validate({"of": "robots", **keys})

@@ -192,3 +192,27 @@ def test_a_body_that_a_mutant_adds_belongs_to_the_pin_whose_selection_holds_it()
     one = changed_facts(before, world(text.replace("angle_range", "number: 50, angle_range")).scene(0))
     assert {kind for _, kind in one} == {"beams"}
     assert touches(case, (before, before), one, [Pin(of="robots", facts=["sensors"])]) == one
+
+
+@pytest.mark.parametrize(
+    ("keys", "distance"),
+    [
+        # the way leads along y = 5 from x = 1 to 9; the posts stand at (5, 7) and (5, 4), (11, 9) is beyond the goal
+        ({"what": "way", "to": "posts"}, 1),
+        ({"what": "way", "to": "posts", "which": "farthest"}, 20**0.5),
+        ({"what": "way", "to": "posts", "which": "middle"}, 5 / 3),
+        ({"what": "way", "place": [0, 5]}, 1),
+        ({"what": "position", "to": "posts", "which": "middle"}, (6**2 + (5 / 3) ** 2) ** 0.5),
+        ({"what": "goal", "to": "posts", "which": "nearest"}, 17**0.5),
+    ],
+)
+def test_a_way_is_near_to_a_middle(keys: dict[str, Any], distance: float) -> None:
+    posts = ", ".join(f"{{{DISC}, state: [{x}, {y}, 0]}}" for x, y in ((5, 7), (5, 4), (11, 9)))
+    robot = f"{{kinematics: {{name: diff}}, {DISC}, state: [1, 5, 0], goal: [9, 5, 0]}}"
+    text = f"world: {{width: 12, height: 10}}\nrobot: [{robot}, {{{DISC}, state: [1, 1, 0]}}]\nobstacle: [{posts}]\n"
+    material = world(text, posts={"role": "obstacle"}, mover={"inside": [0, 4, 2, 6]}, stands={"inside": [0, 0, 2, 2]})
+    near = {"of": "mover", **keys}
+    assert seen(material, "near", {**near, "distance": {"eq": distance, "tol": 0.01}}).passed
+    assert not seen(material, "near", {**near, "distance": {"eq": distance + 0.1, "tol": 0.05}}).passed
+    if keys["what"] == "way":
+        assert not seen(material, "near", {**near, "of": "stands", "distance": {"ge": 0}}).passed  # it has no goal

@@ -25,10 +25,7 @@ ATTACKS: dict[str, frozenset[str]] = {}
 """Name of an operator → predicates and properties that it spoils."""
 EVERYWHERE = "everywhere"
 """Stands for what every prompt asks for, unless the case leaves it free."""
-MOTION = (
-    "arrive", "crosses", "ends_at", "enters", "explores", "one_way", "radial", "range_trend", "roams", "timetable",
-    "travel", "visits",
-)  # fmt: skip
+MOTION = ("arrive", "crosses", "explores", "moves", "one_way", "roams", "sees", "visits")
 """Predicates about bodies that get somewhere."""
 _MAX_ALONE = 4
 """Number of entries of which each is attacked alone."""
@@ -186,7 +183,7 @@ def _route(entry: Data) -> list[Any]:
     return route if entry.get("number", 1) == 1 and len(rows_of(route)) > 1 else []
 
 
-@attack("visits", "enters", "one_way", "timetable")
+@attack("visits", "one_way")
 def route_reversed(data: Data) -> Change:
     """Waypoints in the opposite order; a round keeps its end."""
 
@@ -201,7 +198,7 @@ def route_reversed(data: Data) -> Change:
     yield from together(data, change, "waypoints in the opposite order")
 
 
-@attack("visits", "enters", "one_way", "timetable")
+@attack("visits", "one_way")
 def route_cut(data: Data) -> Change:
     """Only the last waypoint."""
 
@@ -217,7 +214,7 @@ def _sensors(entry: Data) -> Iterator[Data]:
     return (sensor for sensor in entry.get("sensors") or [] if isinstance(sensor, dict))
 
 
-@attack("radial", "sees")
+@attack("sees")
 def sensors_turned(data: Data) -> Change:
     """Sensors that look the other way, or stand beside their robot."""
     for what, by in (("looks back", (0.0, 0.0, math.pi)), ("stands 5 m away", (5.0, 0.0, 0.0))):
@@ -231,7 +228,7 @@ def sensors_turned(data: Data) -> Change:
         yield from together(data, change, f"a sensor {what}")
 
 
-@attack("radial", "sees", "explores")
+@attack("sees", "explores")
 def sensors_blind(data: Data) -> Change:
     """Sensors that see nothing but what is farthest."""
 
@@ -291,7 +288,7 @@ def limits_out_of_reach(data: Data) -> Change:
     yield from together(data, change, "accelerations of 0.0001")
 
 
-@attack("arrive", "crosses", "ends_at", "enters", "one_way", "timetable", "visits")
+@attack("arrive", "crosses", "moves", "one_way", "visits")
 def time_up(data: Data) -> Change:
     """A time limit before which nobody, or not everybody, can have arrived."""
     times = []

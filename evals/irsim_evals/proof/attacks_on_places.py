@@ -82,19 +82,19 @@ def _mirror(data: Data, axis: int) -> Change:
         yield f"{('left and right', 'up and down')[axis]} exchanged", made
 
 
-@attack("beside", "goal_dx", "one_way", "timetable", "visits", "enters", "plan")
+@attack("beside", "goal_dx", "crosses", "one_way", "visits", "plan")
 def mirror_x(data: Data) -> Change:
     """Left and right exchanged."""
     yield from _mirror(data, 0)
 
 
-@attack("beside", "goal_dy", "one_way", "timetable", "visits", "enters", "plan")
+@attack("beside", "goal_dy", "crosses", "one_way", "visits", "plan")
 def mirror_y(data: Data) -> Change:
     """Up and down exchanged."""
     yield from _mirror(data, 1)
 
 
-@attack("crosses", "line_passes")
+@attack("crosses")
 def parked_away(data: Data) -> Change:
     """A moving obstacle whose way lies in the corner of the world that is farthest from the robots."""
     world = data.get("world") or {}

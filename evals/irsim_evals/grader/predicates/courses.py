@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import shapely
+from pydantic import model_validator
 
 from irsim_evals.grader.matching import Counted, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
@@ -14,11 +15,14 @@ from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, O
 from irsim_evals.grader.selection import Selection
 
 if TYPE_CHECKING:
+    from irsim_evals.grader.body import GradedBody
     from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
 
 _LEFT = 0.05
 """Distance [m] from its start at which a body has left it."""
+Place = tuple[Quantity, Quantity] | tuple[Quantity, Quantity, Quantity, Quantity]
+"""A point x, y or a region x0, y0, x1, y1 [m]."""
 
 
 @register("visits")
@@ -26,12 +30,14 @@ class Visits(OfBodies, EpisodePredicate):
     """Every body of a selection comes to some places in the order given, and to none of them out of turn, unless it
     lies on the straight way between two others. An empty selection fails."""
 
-    places: list[tuple[Quantity, Quantity]]
-    """Places in the order in which they are visited [m]."""
+    places: list[Place]
+    """Places in the order in which they are visited: a point x, y or a region x0, y0, x1, y1 [m]."""
     tol: Quantity = 0.3
-    """Greatest distance from a place that counts as being there [m]."""
+    """Greatest distance from a point that counts as being there [m]."""
     laps: Counted = 1
     """How often the whole list is visited, each time from its first place on."""
+    avoids: list[Place] = []
+    """Places to which it never comes [m]."""
     stray: Quantity | None = None
     """Greatest distance of the path from the straight lines between the places, the way back to the first one
     included [m]; default: any."""
@@ -39,28 +45,40 @@ class Visits(OfBodies, EpisodePredicate):
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Follow the paths."""
         bodies = material.bodies(episode.scene, self.of)
-        shown = ", ".join(f"({show(x)}, {show(y)})" for x, y in self.places)
-        expected = f"{self.of} visit {shown}" + (f", {self.laps} times" if self.laps > 1 else "")
+        expected = f"{self.of} visit " + ", ".join(map(_words, self.places))
+        expected += f", {self.laps} times" if self.laps > 1 else ""
+        expected += "".join(f", never {_words(place)}" for place in self.avoids)
         if self.stray is not None:
             expected += f", at most {show(self.stray)} m off the lines between them"
         problems = [(body, self._problem(episode.path(body.index))) for body in bodies]
         wrong = [(body, text) for body, text in problems if text]
-        marks = [Mark(points=[list(place)], text="visit") for place in self.places] if wrong else []
+        spots = [[shape.x, shape.y] for shape in (_shape(place).centroid for place in self.places)]
+        marks = [Mark(points=[spot], text="visit") for spot in spots] if wrong else []
         return judged(expected, problems, wrong, "waypoints", right="so it is", marks=marks)
 
     def _problem(self, way: np.ndarray) -> str:
         """The problem of a path; empty if it is right."""
-        near = np.array([np.hypot(*(way - np.array(place)).T) <= self.tol for place in self.places])
+        near = self._near(way, self.places)
         begins = np.flatnonzero(near[0] & ~np.concatenate([[False], near[0, :-1]])).tolist()
         results = [self._follow(near[:, row:]) for row in begins] or [(0, self._missing(0))]
         if all(text for _, text in results):
             return max(results)[1]
+        if self.avoids and (never := self._near(way, self.avoids).any(axis=1)).any():
+            return f"comes to {_words(self.avoids[int(never.argmax())])}"
         if self.stray is not None:
-            lines = shapely.LineString([*self.places, self.places[0]])
+            lines = shapely.LineString([_shape(place).centroid for place in (*self.places, self.places[0])])
             off = float(shapely.distance(lines, shapely.points(way)).max())
             if off > self.stray:
                 return f"gets {show(off)} m off the lines"
         return ""
+
+    def _near(self, way: np.ndarray, places: list[Place]) -> np.ndarray:
+        """(P, T) whether a path is at each place."""
+        points = shapely.points(way)
+        return np.array([shapely.distance(_shape(place), points) <= self._reach(place) for place in places])
+
+    def _reach(self, place: Place) -> float:
+        return self.tol if len(place) == 2 else 0.0
 
     def _follow(self, near: np.ndarray) -> tuple[int, str]:
         """Number of visits in the right order, and the problem of the next one; empty if all are made.
@@ -74,47 +92,26 @@ class Visits(OfBodies, EpisodePredicate):
             rows = np.flatnonzero(near[there, row:])
             if not rows.size:
                 return number, self._missing(number)
-            line = shapely.LineString([self.places[here], self.places[there]])
-            for k in range(count):
-                beside = shapely.distance(line, shapely.Point(self.places[k])) > 2 * self.tol
+            line = shapely.LineString([_shape(self.places[k]).centroid for k in (here, there)])
+            for k, place in enumerate(self.places):
+                beside = shapely.distance(line, _shape(place)) > 2 * self._reach(place)
                 if beside and near[k, row : row + int(rows[0])].any():
-                    x, y = self.places[k]
-                    return number, f"comes to ({x:g}, {y:g}) out of turn after {number} visits"
+                    return number, f"comes to {_words(place)} out of turn after {number} visits"
             row += int(rows[0])
         return self.laps * count, ""
 
     def _missing(self, number: int) -> str:
-        x, y = self.places[number % len(self.places)]
-        return f"does not come to ({x:g}, {y:g})" + (f" after {number} visits" if number else "")
+        place = self.places[number % len(self.places)]
+        return f"does not come to {_words(place)}" + (f" after {number} visits" if number else "")
 
 
-@register("enters")
-class Enters(OfBodies, EpisodePredicate):
-    """Every body of a selection comes into each region in this order. An empty selection fails."""
+def _shape(place: Place) -> Any:
+    """The point, or the rectangle, that a place is."""
+    return shapely.Point(place) if len(place) == 2 else shapely.box(*place)
 
-    regions: list[tuple[Quantity, Quantity, Quantity, Quantity]]
-    """x0, y0, x1, y1 of each region [m]."""
-    avoids: list[tuple[Quantity, Quantity, Quantity, Quantity]] = []
-    """Regions that its position never comes into [m]."""
 
-    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
-        """Follow every body."""
-        bodies = material.bodies(episode.scene, self.of)
-        expected = f"{self.of} comes into " + ", ".join(show(list(region)) for region in self.regions)
-        expected += "".join(f", never into {show(list(region))}" for region in self.avoids)
-        problems = [(body, self._why_not(episode.path(body.index))) for body in bodies]
-        wrong = [(body, why) for body, why in problems if why]
-        marks = [Mark(points=episode.positions(body.index)[::20].tolist(), text=body.name) for body, _ in wrong]
-        return judged(expected, problems, wrong, "goal", right=f"all {len(bodies)}", marks=marks)
-
-    def _why_not(self, way: np.ndarray) -> str:
-        row = 0
-        for region in self.regions:
-            rows = np.flatnonzero(_within(way[row:], region))
-            if not rows.size:
-                return f"does not come to {show(list(region))}" + (" after the others" if row else "")
-            row += int(rows[0])
-        return next((f"comes into {show(list(r))}" for r in self.avoids if _within(way, r).any()), "")
+def _words(place: Place) -> str:
+    return f"({', '.join(map(show, place))})"
 
 
 def _within(way: np.ndarray, region: tuple[float, float, float, float]) -> np.ndarray:
@@ -168,87 +165,78 @@ class OneWay(OfBodies, EpisodePredicate):
         )
 
 
-@register("timetable")
-class Timetable(OfBodies, EpisodePredicate):
-    """The bodies of a selection cross a line at given times, each of them once."""
+@register("crosses")
+class Crosses(OfBodies, EpisodePredicate):
+    """Bodies of a selection cross a line from one side to the other. An empty selection fails."""
 
-    start: tuple[Quantity, Quantity]
-    """One end of the line [m]."""
-    end: tuple[Quantity, Quantity]
-    """The other end [m]."""
-    times: list[Quantity]
-    """When the first, the second, … of them crosses it [s]."""
+    line: tuple[tuple[Quantity, Quantity], tuple[Quantity, Quantity]] | None = None
+    """The two ends of the line [m]."""
+    way_of: Selection | None = None
+    """Selection of one body instead: the line is that through its start and its goal."""
+    ahead: bool = True
+    """Of that line only what lies between the body and its goal at the time counts."""
+    driving: bool = False
+    """Only crossings count after that body has left its start."""
+    direction: Literal["right_to_left", "left_to_right"] | None = None
+    """Only those count that cross so, seen from the first end toward the second, or by the body."""
+    number: Match | None = None
+    """Accepted numbers of bodies that cross."""
+    spread: Quantity = 0.0
+    """Least time between the first and the last body that crosses [s]."""
+    times: list[Quantity] | None = None
+    """When the first, the second, … of them crosses [s]; then none may cross twice."""
     tol: Quantity = 0.5
     """Greatest deviation from these times [s]."""
 
-    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
-        """Look for the crossings."""
-        bodies = material.bodies(episode.scene, self.of)
-        expected = f"{self.of} cross the line {show(list(self.start))} to {show(list(self.end))} after "
-        expected += ", ".join(f"{time:g} s" for time in self.times)
-        crossings = sorted(
-            ((time, body) for body in bodies for time in self._crossings(episode, body.index)),
-            key=lambda crossing: crossing[0],
-        )
-        passed = len(crossings) == len(self.times) == len({body.name for _, body in crossings})
-        passed = passed and all(abs(a - b) <= self.tol + 1e-9 for (a, _), b in zip(crossings, self.times, strict=True))
-        return Observation(
-            passed,
-            expected,
-            summary([(body, f"{time:.1f} s") for time, body in crossings]) or f"none of {len(bodies)}",
-            f"{bodies[0].entry}.state" if bodies else None,
-            marks=[Mark(points=[list(self.start), list(self.end)], text="line")],
-        )
-
-    def _crossings(self, episode: GradedEpisode, index: int) -> list[float]:
-        length = math.dist(self.start, self.end) or 1.0
-        unit = (np.array(self.end) - self.start) / length
-        offset = episode.positions(index) - np.array(self.start)
-        aside, along = unit[0] * offset[:, 1] - unit[1] * offset[:, 0], offset @ unit
-        rows = np.flatnonzero((aside[1:] > 0) != (aside[:-1] > 0))
-        return [float(episode.trace.time[row + 1]) for row in rows if 0 <= along[row] <= length]
-
-
-@register("crosses")
-class Crosses(OfBodies, EpisodePredicate):
-    """Bodies of a selection cross the line of another body's way from one side to the other."""
-
-    way_of: Selection
-    """Selection of one body, whose way leads from its start to its goal."""
-    number: Match
-    """Accepted numbers of bodies that cross."""
-    ahead: bool = True
-    """Only crossings between the body and its goal count."""
-    driving: bool = False
-    """Only crossings count after the body has left its start."""
-    direction: Literal["right_to_left", "left_to_right"] | None = None
-    """Only those count that cross so, seen by the body."""
-    spread: Quantity = 0.0
-    """Least time between the first and the last crossing [s]."""
+    @model_validator(mode="after")
+    def _one(self) -> Crosses:
+        if (self.line is None) == (self.way_of is None):
+            raise ValueError("give either `line` or `way_of`")
+        if self.number is None and self.times is None:
+            raise ValueError("say how many bodies cross with `number`, or when with `times`")
+        return self
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look for changes of side."""
-        bodies, ways = material.bodies(episode.scene, self.of), material.bodies(episode.scene, self.way_of)
-        expected = f"{self.of} that cross ahead of {self.way_of}: {self.number.words()}"
-        if self.spread:
-            expected += f", over at least {self.spread:g} s"
-        if not bodies or len(ways) != 1 or ways[0].goal is None:
+        bodies = material.bodies(episode.scene, self.of)
+        ways = [] if self.way_of is None else material.bodies(episode.scene, self.way_of)
+        where = f"ahead of {self.way_of}" if self.line is None else f"the line {show(list(map(list, self.line)))}"
+        expected = f"{self.of} that cross {where}" + (f": {self.number.words()}" if self.number is not None else "")
+        expected += f", over at least {self.spread:g} s" if self.spread else ""
+        expected += "".join(f", after {time:g} s" for time in self.times or ())
+        if not bodies or (self.line is None and (len(ways) != 1 or ways[0].goal is None)):
             return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.way_of}: {len(ways)}")
-        start, goal = np.array(ways[0].pose[:2]), np.array(ways[0].goal[:2])
-        length = math.dist(start, goal) or 1.0
-        unit = (goal - start) / length
-        own = (episode.positions(ways[0].index) - start) @ unit
-        times = []
-        for body in bodies:
-            offset = episode.positions(body.index) - start
-            left, far = unit[0] * offset[:, 1] - unit[1] * offset[:, 0], offset @ unit
-            for row in np.flatnonzero((left[1:] > 0) != (left[:-1] > 0)).tolist():
-                way = "right_to_left" if left[row + 1] > 0 else "left_to_right"
-                ahead = own[row] < far[row] <= length and (own[row] > _LEFT or not self.driving)
-                if (ahead or not self.ahead) and self.direction in (None, way):
-                    times.append(float(episode.trace.time[row]))
-                    break
-        spread = max(times) - min(times) if times else 0.0
-        passed = matches(self.number, len(times), "count") and spread >= self.spread - 1e-9
-        seen = ", ".join(f"{time:.1f} s" for time in sorted(times))
-        return Observation(passed, expected, f"{len(times)}: {seen}", f"{bodies[0].entry}.state")
+        start, end = self.line or (ways[0].pose[:2], tuple((ways[0].goal or [])[:2]))
+        front: Any = np.full(len(episode.trace), -1e-9)
+        if ways:
+            unit = (np.array(end) - start) / (math.dist(start, end) or 1.0)
+            own = (episode.positions(ways[0].index) - start) @ unit
+            front = own if self.ahead else front - math.inf
+            front = np.where(own > _LEFT, front, math.inf) if self.driving else front
+        all_times = [(body, self._times(episode, body, start, end, front)) for body in bodies]
+        crossed = sorted(((times[0], body) for body, times in all_times if times), key=lambda crossing: crossing[0])
+        spread = crossed[-1][0] - crossed[0][0] if crossed else 0.0
+        passed = (self.number is None or matches(self.number, len(crossed), "count")) and spread >= self.spread - 1e-9
+        if self.times is not None:
+            passed = passed and len(crossed) == len(self.times) == sum(len(times) for _, times in all_times)
+            passed = passed and all(
+                abs(a - b) <= self.tol + 1e-9 for (a, _), b in zip(crossed, self.times, strict=True)
+            )
+        seen = summary([(body, f"{time:.1f} s") for time, body in crossed])
+        marks = [Mark(points=[list(start), list(end)], text="line")]
+        return Observation(passed, expected, f"{len(crossed)}: {seen}", f"{bodies[0].entry}.state", marks=marks)
+
+    def _times(self, episode: GradedEpisode, body: GradedBody, start: Any, end: Any, front: Any) -> list[float]:
+        """Times at which a body crosses the line, where it is farther along it than ``front`` at the time [s]."""
+        length = math.dist(start, end) or 1.0
+        unit = (np.array(end) - start) / length
+        offset = episode.positions(body.index) - np.array(start)
+        left, far = unit[0] * offset[:, 1] - unit[1] * offset[:, 0], offset @ unit
+        most = math.inf if self.line is None and not self.ahead else length
+        rows = np.flatnonzero((left[1:] > 0) != (left[:-1] > 0))
+        return [
+            float(episode.trace.time[row + 1])
+            for row in rows.tolist()
+            if front[row] < far[row] <= most
+            and self.direction in (None, "right_to_left" if left[row + 1] > 0 else "left_to_right")
+        ]

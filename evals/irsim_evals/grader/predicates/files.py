@@ -39,12 +39,15 @@ class Files(AnswerPredicate):
 
     pattern: str
     """Such as ``*.py``."""
-    number: Match
+    number: Match = Match(ge=1)
     """Accepted numbers of files; given files are left out."""
     contain: list[Regex] = []
     """Regular expressions that each of them contains."""
     lack: list[Regex] = []
     """Regular expressions that none of them contains."""
+    has: dict[str, Match] = {}
+    """Path of values in each of them, which is JSON: ``rows[*].success.n``, where ``*`` stands for every entry →
+    accepted values. There must be a value; numbers are compared exactly unless a tolerance is given."""
 
     def observe(self, material: Material) -> Observation:
         """Look into the folder."""
@@ -52,11 +55,12 @@ class Files(AnswerPredicate):
         wrong = []
         for name in names:
             text = material.texts.get(name)
-            if text is None and (self.contain or self.lack):
+            if text is None and (self.contain or self.lack or self.has):
                 wrong.append(f"{name} is {material.others.get(name, 'no text')}")
                 continue
             wrong += [f"{name} lacks /{p}/" for p in self.contain if not re.search(p, text or "")]
             wrong += [f"{name} contains /{p}/" for p in self.lack if re.search(p, text or "")]
+            wrong += [f"{name} {problem}" for problem in (_values(text or "", self.has) if self.has else ())]
         passed = matches(self.number, len(names), "count") and not wrong
         return Observation(
             passed,
@@ -70,34 +74,19 @@ def _new_files(material: Material, pattern: str) -> list[str]:
     return [name for name in material.names if fnmatch.fnmatch(name, pattern)]
 
 
-@register("data")
-class Data(AnswerPredicate):
-    """Every value at some paths of a file of JSON is accepted. A path at which there is no value fails."""
-
-    file: str
-    """Path of the file in the folder."""
-    has: dict[str, Match]
-    """Path such as ``rows[*].success.n``, where ``*`` stands for every entry → accepted values; numbers are compared
-    exactly unless a tolerance is given."""
-
-    def observe(self, material: Material) -> Observation:
-        """Read the file."""
-        expected = f"{self.file}: " + ", ".join(f"{path} {match.words()}" for path, match in self.has.items())
-        text = material.texts.get(self.file)
-        if text is None:
-            return Observation(False, expected, "there is no such file")
-        try:
-            content = read_json(text)
-        except ContentError:
-            return Observation(False, expected, "it is not JSON")
-        seen, passed = [], True
-        for path, match in self.has.items():
-            values = values_at(content, path)
-            passed &= bool(values) and all(matches(match, value, "count") for value in values)
-            more = len(values) - _MAX_SHOWN
-            shown = ", ".join(map(show, values[:_MAX_SHOWN])) or "no value"
-            seen.append(f"{path}: {shown}" + (f" and {more} more" if more > 0 else ""))
-        return Observation(passed, expected, "; ".join(seen))
+def _values(text: str, has: dict[str, Match]) -> list[str]:
+    """The problems of the values in a text of JSON."""
+    try:
+        content = read_json(text)
+    except ContentError:
+        return ["is not JSON"]
+    problems = []
+    for path, match in has.items():
+        values = values_at(content, path)
+        if not values or not all(matches(match, value, "count") for value in values):
+            more = f" and {len(values) - _MAX_SHOWN} more" if len(values) > _MAX_SHOWN else ""
+            problems.append(f"has at {path}: {', '.join(map(show, values[:_MAX_SHOWN])) or 'no value'}{more}")
+    return problems
 
 
 def values_at(data: Any, path: str) -> list[Any]:

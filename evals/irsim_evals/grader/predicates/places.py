@@ -13,6 +13,7 @@ from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, middle, register, summary
+from irsim_evals.grader.predicates.ways import way_of
 from irsim_evals.grader.selection import BUILT_IN, Selection
 from irsim_evals.grader.words import OneOf
 
@@ -73,7 +74,7 @@ def _holds(box: tuple[float, float, float, float], point: tuple[float, float]) -
 
 @register("near")
 class Near(OfBodies, ScenePredicate):
-    """Every body of a selection is at some distance from the nearest body of another, or from a place."""
+    """Every body of a selection is at some distance from the bodies of another, or from a place."""
 
     stage = "relations"
 
@@ -81,14 +82,15 @@ class Near(OfBodies, ScenePredicate):
     """Name of the other selection."""
     place: tuple[Quantity, Quantity] | None = None
     """A place instead of a selection [m]."""
-    what: Literal["position", "footprint", "goal"] = "position"
-    """The part of the first selection that counts. Footprints are measured to footprints, edge to edge."""
+    what: Literal["position", "footprint", "goal", "way"] = "position"
+    """The part of the first selection that counts; the way is the straight line from the start to the last goal.
+    Footprints are measured to footprints, edge to edge."""
     edge: bool | None = None
     """Whether to measure to the edge of the others instead of to their position; default: from footprints only."""
     distance: Match
     """Accepted distances [m]."""
-    farthest: bool = False
-    """Measure to the farthest body of the other selection instead of the nearest."""
+    which: Literal["nearest", "farthest", "middle"] = "nearest"
+    """The body of the other selection to which it is measured, or the mean of all their positions."""
 
     @model_validator(mode="after")
     def _one(self) -> Near:
@@ -100,29 +102,35 @@ class Near(OfBodies, ScenePredicate):
         """Measure."""
         bodies = material.bodies(scene, self.of)
         others = [] if self.to is None else material.bodies(scene, self.to)
-        target = self.to if self.place is None else show(list(self.place))
+        target = f"the {self.which} of {self.to}" if self.place is None else show(list(self.place))
         expected = f"{self.what} of {self.of} to {target}: {self.distance.words()} m"
         if self.place is None and not others:
             return Observation(False, expected, "no body")
         distances = [(body, self._measure(body, others)) for body in bodies]
         wrong = [(body, value) for body, value in distances if not matches(self.distance, value, "length")]
         marks = [Mark(points=[list(body.position)], text=body.name) for body, _ in wrong]
-        return judged(expected, distances, wrong, "goal" if self.what == "goal" else "state", marks=marks)
+        return judged(expected, distances, wrong, "goal" if self.what in ("goal", "way") else "state", marks=marks)
 
     def _measure(self, body: GradedBody, others: list[GradedBody]) -> float | None:
-        point = body.goal if self.what == "goal" else body.position
-        if point is None:
+        if self.what in ("goal", "way") and body.goal is None:
             return None
-        at = body.footprint if self.what == "footprint" else shapely.Point(point[:2])
+        at = {
+            "position": shapely.Point(body.position),
+            "footprint": body.footprint,
+            "goal": shapely.Point((body.goal or body.position)[:2]),
+            "way": way_of(body),
+        }[self.what]
         edge = self.what == "footprint" if self.edge is None else self.edge
         rest = [other for other in others if other is not body]
         shapes = [other.footprint if edge else shapely.Point(other.position) for other in rest]
+        if self.which == "middle" and rest:
+            shapes = [shapely.Point(middle(rest))]
         if self.place is not None:
             shapes = [shapely.Point(self.place)]
         if not shapes:
             return None
         distances = [float(shapely.distance(at, shape)) for shape in shapes]
-        return max(distances) if self.farthest else min(distances)
+        return max(distances) if self.which == "farthest" else min(distances)
 
 
 @register("spacing")

@@ -138,6 +138,10 @@ class Says(AnswerPredicate):
     """At least one of these occurs."""
     none_of: list[Regex] = []
     """None of these occurs."""
+    points: dict[str, list[Regex]] = {}
+    """Name of a point that the reply makes → regular expressions, one of which occurs."""
+    at_least: Counted | None = None
+    """How many of the points it makes; default: all."""
     about: str = ""
     """Its meaning in words, for the evidence."""
     turn: Counted | None = None
@@ -156,33 +160,24 @@ class Says(AnswerPredicate):
         missing = [pattern for pattern in self.all_of if not occurs(pattern)]
         unwanted = [pattern for pattern in self.none_of if occurs(pattern)]
         lacking = bool(self.any_of) and not any(map(occurs, self.any_of))
+        made = [name for name, ways in self.points.items() if any(map(occurs, ways))]
+        need = len(self.points) if self.at_least is None else self.at_least
         expected = (
             f"says {self.about or 'so'}, in words that the case knows ({len(self.any_of) + len(self.all_of)} ways)"
         )
         if unwanted:
             match = re.search(unwanted[0], text, re.IGNORECASE)
             expected += f"; it must not say {match[0]!r}" if match else ""
+        if self.points:
+            expected += (
+                f", and makes {need} of the points {', '.join(self.points)}; it makes {', '.join(made) or 'none'}"
+            )
         quoted = text if len(text) <= _MAX_QUOTED else text[:_MAX_QUOTED] + " …"
         return Observation(
-            bool(text) and not (missing or unwanted or lacking), f"the reply {expected}", quoted or "no reply"
+            bool(text) and not (missing or unwanted or lacking) and len(made) >= need,
+            f"the reply {expected}",
+            quoted or "no reply",
         )
-
-
-@register("mentions_limit")
-class MentionsLimit(AnswerPredicate):
-    """The reply names limits, each in one of several ways."""
-
-    limits: dict[str, list[Regex]]
-    """Name of a limit → regular expressions, one of which occurs."""
-    at_least: Counted | None = None
-    """How many of them must be named; default: all."""
-
-    def observe(self, material: Material) -> Observation:
-        """Search for each of them."""
-        named = [name for name, ways in self.limits.items() if Says(any_of=ways).observe(material).passed]
-        need = len(self.limits) if self.at_least is None else self.at_least
-        expected = f"{need} of: {', '.join(self.limits)}"
-        return Observation(len(named) >= need, f"the reply names {expected}", ", ".join(named) or "none of them")
 
 
 @register("states")

@@ -11,16 +11,7 @@ import shapely
 from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import (
-    Observation,
-    OfBodies,
-    ScenePredicate,
-    judged,
-    middle,
-    register,
-    travellers,
-)
-from irsim_evals.grader.selection import Selection
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, register, travellers
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
@@ -52,7 +43,7 @@ class Ways(OfBodies, ScenePredicate):
             return Observation(False, expected, f"{len(bodies)} bodies with a goal")
         seen = ""
         for a, b in itertools.combinations(bodies, 2):
-            angle, distance = abs(wrap(_direction(a) - _direction(b))), float(shapely.distance(_line(a), _line(b)))
+            angle, distance = abs(wrap(_direction(a) - _direction(b))), float(shapely.distance(way_of(a), way_of(b)))
             seen = f"{a.name} and {b.name}: {math.degrees(angle):.0f}°, {show(distance)} m apart"
             off = self.angle is not None and not matches(self.angle, angle, "angle")
             far = self.distance is not None and not matches(self.distance, distance, "length")
@@ -66,13 +57,13 @@ def _direction(body: GradedBody) -> float:
     return math.atan2(goal[1] - body.pose[1], goal[0] - body.pose[0])
 
 
-def _line(body: GradedBody) -> shapely.LineString:
+def way_of(body: GradedBody) -> shapely.LineString:
     """The straight line from the start of a body to its last goal."""
     return shapely.LineString([body.pose[:2], (body.goal or [*body.pose])[:2]])
 
 
 def _mark(body: GradedBody) -> Mark:
-    return Mark(points=[list(point) for point in _line(body).coords], text=body.name)
+    return Mark(points=[list(point) for point in way_of(body).coords], text=body.name)
 
 
 @register("line_of_sight")
@@ -87,32 +78,11 @@ class LineOfSight(OfBodies, ScenePredicate):
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Draw the lines."""
         expected = f"from each of {self.of} to its goal the view is {'clear' if self.clear else 'blocked'}"
-        clear = [(body, not shapely.intersects(scene.solid, _line(body))) for body in travellers(self, material, scene)]
+        clear = [
+            (body, not shapely.intersects(scene.solid, way_of(body))) for body in travellers(self, material, scene)
+        ]
         wrong = [(body, value) for body, value in clear if value != self.clear]
         return judged(expected, clear, wrong, "goal", said="clear for ", marks=[_mark(body) for body, _ in wrong])
-
-
-@register("line_passes")
-class LinePasses(OfBodies, ScenePredicate):
-    """The straight line from start to goal of every body of a selection comes near the middle of another selection."""
-
-    stage = "relations"
-
-    by: Selection
-    """Name of the other selection: its middle is the mean of its positions."""
-    distance: Match
-    """Accepted distances of the line from that middle [m]."""
-
-    def observe(self, material: Material, scene: GradedScene) -> Observation:
-        """Measure."""
-        bodies, others = travellers(self, material, scene), material.bodies(scene, self.by)
-        expected = f"the way of {self.of} passes the middle of {self.by} at {self.distance.words()} m"
-        if not bodies or not others:
-            return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.by}: {len(others)}")
-        point = shapely.Point(middle(others))
-        distances = [(body, float(_line(body).distance(point))) for body in bodies]
-        wrong = [(body, value) for body, value in distances if not matches(self.distance, value, "length")]
-        return judged(expected, distances, wrong, "goal")
 
 
 @register("reachable")

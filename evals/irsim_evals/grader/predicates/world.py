@@ -38,12 +38,15 @@ WORLD_KINDS: dict[str, Kind] = {
     "fog_map_resolution": "size",
     "map": "name",
     "map_file": "name",
+    "map_cell": "size",
+    "map_share": "share",
+    "map_seed": "count",
 }
 """Property of the world → what it measures."""
 WorldProperty = Annotated[str, OneOf("property of the world", tuple(WORLD_KINDS))]
 _EDGES = ("left", "bottom", "right", "top")
 _KEYS = {"left": "offset", "bottom": "offset", "right": "width", "top": "height"} | dict.fromkeys(
-    ("map", "map_file"), "obstacle_map"
+    ("map", "map_file", "map_cell", "map_share", "map_seed"), "obstacle_map"
 )
 _MIN_AREA = 1e-4
 """Differences of a smaller area come from rounding [m²]."""
@@ -52,7 +55,8 @@ _MIN_AREA = 1e-4
 @register("world")
 class World(ScenePredicate):
     """The world has some properties: ``width``, ``top``, ``map`` (``image``, ``ros``, ``perlin``), … ``map_file``
-    is the path of its picture as written."""
+    is the path of its picture as written, ``map_cell`` the longer side of its cells [m], ``map_share`` the share of
+    them that is occupied, ``map_seed`` the seed of the map itself."""
 
     has: dict[WorldProperty, Match]
     """Property → accepted values."""
@@ -85,37 +89,13 @@ def world_value(scene: GradedScene, name: str) -> Any:
     if name in ("map", "map_file"):
         given = getattr(world.obstacle_map, "path" if name == "map_file" else "name", None)
         return PurePosixPath(given).as_posix() if name == "map_file" and given is not None else given
+    if name == "map_cell":
+        return None if scene.env.scenario.grid is None else max(scene.env.scenario.grid.cell)
+    if name == "map_share":
+        return _occupied_share(scene)
+    if name == "map_seed":
+        return getattr(world.obstacle_map, "seed", None)
     return getattr(world, name)
-
-
-@register("fill")
-class Fill(ScenePredicate):
-    """The map of the world: its kind, its cells, and the share of them that is occupied."""
-
-    kind: Match | None = None
-    """Accepted names of the map: ``perlin``, ``image``, ``ros``."""
-    cell: Match | None = None
-    """Accepted sizes of a cell [m]."""
-    share: Match | None = None
-    """Accepted shares of occupied cells."""
-    seed: Match | None = None
-    """Accepted seeds of the map."""
-
-    def observe(self, material: Material, scene: GradedScene) -> Observation:
-        """Look at the cells."""
-        options, grid = scene.world.obstacle_map, scene.env.scenario.grid
-        seen = {
-            "kind": None if options is None else getattr(options, "name", "image"),
-            "cell": None if grid is None else max(grid.cell),
-            "share": _occupied_share(scene),
-            "seed": getattr(options, "seed", None),
-        }
-        wanted = {"kind": self.kind, "cell": self.cell, "share": self.share, "seed": self.seed}
-        kinds = {"kind": "name", "cell": "size", "share": "share", "seed": "count"}
-        off = [k for k, match in wanted.items() if match is not None and not matches(match, seen[k], kinds[k])]  # type: ignore[arg-type]
-        expected = ", ".join(f"{key} {match.words()}" for key, match in wanted.items() if match is not None)
-        observed = ", ".join(f"{key} {show(seen[key])}" for key, match in wanted.items() if match is not None)
-        return Observation(not off, expected, observed, "world.obstacle_map" if off else None)
 
 
 def _occupied_share(scene: GradedScene) -> float | None:

@@ -215,6 +215,8 @@ class _Look:
         return bool(things)
 
     def near(self, said: Any, _: float) -> bool:
+        if said.what == "way" or said.which == "middle":
+            raise _Unknown
         things = self.of(said.of)
         others = [] if said.to is None else self.of(said.to)
         if not things or (said.place is None and not others):
@@ -235,7 +237,7 @@ class _Look:
             distances = [to_point(other, point) if said.edge else math.dist(point, other.middle) for other in rest]
         if not distances:
             return None
-        return max(distances) if said.farthest else min(distances)
+        return max(distances) if said.which == "farthest" else min(distances)
 
     def spacing(self, said: Any, _: float) -> bool:
         things = self.of(said.of)
