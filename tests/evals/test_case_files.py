@@ -6,13 +6,17 @@ import re
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import pytest
 from pydantic import ValidationError
 
 from irsim_evals.cases.model import Assertion
-from irsim_evals.cases.store import Store, all_case_ids, case_ids
+from irsim_evals.cases.reading import CaseError
+from irsim_evals.cases.schema import case_schema
+from irsim_evals.cases.store import Store, all_case_ids, case_ids, instance_of, raw_case
 from irsim_evals.cli.choice import chosen
 from irsim_evals.grader.properties import PROPERTIES
+from tests.effort import some
 from tests.evals.conftest import EVALS, RIGHT, irsim_evals, refusal
 
 CASE_TEXT = """\
@@ -50,6 +54,33 @@ def test_an_expression_that_python_cannot_read_is_refused() -> None:
     for said in ({"says": {"any_of": ["(door"]}}, {"files": {"pattern": "*", "number": 1, "lack": ["(a"]}}):
         with pytest.raises(ValidationError, match="is not a regular expression"):
             Assertion.model_validate({"id": "slip", **said})
+
+
+@pytest.mark.parametrize(
+    ("part", "place", "what"),
+    [
+        ("assert: [{id: a, arrive: {of: robots}}]", "2:10", "'arrive' is about an episode"),
+        ("episodes: [{seconds: 3, assert: [{id: a, count: {of: robots, number: 1}}]}]", "2:34", "'count' is about the"),
+        ("episodes: [{seconds: 3, behavior: ocra, assert: []}]", "2:35", "fix: write orca"),
+        ("episodes: [{seconds: 3, speed: {rbots: 2}, assert: []}]", "2:33", "fix: write robots"),
+        ("pins: [{of: world, facts: kinematics}]", "2:8", "'kinematics' is not a fact of world"),
+        ("pins: [{of: robtos, facts: size}]", "2:13", "fix: write robots"),
+        ("free: [{facts: [name, colour]}]", "2:23", "fix: write color"),
+        ("assert: [{id: a, says: {any_of: [x], turn: 2}}]", "1:1", "'a' is about a later turn than the last one, 1"),
+        ("assert: [{id: a, inside: {of: all, region: [0, 0, 1]}}]", "2:44", "item 4 is missing"),
+        ("assert: [{id: a, every_scenario: {that: [{cuont: {}}]}}]", "2:42", "fix: write count"),
+        ("assert: [{id: a, facing: {of: all, toward: nort}}]", "2:44", "fix: write north"),
+        ("waived: [{operator: on_top, what: '(', why: w}]", "2:35", "'(' is not a regular expression"),
+    ],
+)
+def test_a_case_that_cannot_be_graded_as_it_is_meant_is_refused(
+    part: str, place: str, what: str, tmp_path: Path
+) -> None:
+    file = written(tmp_path, "own", "{id: own, title: t, category: [basic], level: 1, prompt: p,\n" + part + "}\n")
+    code, text = said("check", file)
+    assert code == 2
+    assert f"{file}:{place}  error" in text
+    assert what in text
 
 
 def test_every_property_has_its_sentence() -> None:
@@ -128,6 +159,63 @@ def test_every_problem_of_a_file_is_said_at_once_with_its_place_and_a_fix(tmp_pa
         assert f"{file}:{line}:{column}  error" in text
         assert what in text
     assert "16 errors" in text
+
+
+RIGHT_CASE: dict[str, Any] = {"id": "own", "title": "t", "category": ["basic"], "level": 1, "prompt": "p"}
+COUNT = {"id": "a", "count": {"of": "robots", "number": 1}}
+ARRIVE = {"id": "b", "arrive": {"of": "robots"}}
+REFUSED: list[tuple[str, Any]] = [
+    ("levle", 1),
+    ("level", 5),
+    ("category", "basic"),
+    ("disposition", ["bulid"]),
+    ("seeds", []),
+    ("assert", [{"id": "a"}]),
+    ("assert", [{**COUNT, "world": {"width": 3}}]),
+    ("assert", [{"id": "a", "cuont": {"of": "robots", "number": 1}}]),
+    ("assert", [{"id": "a", "count": {"of": "robots"}}]),
+    ("assert", [{"id": "a", "count": {"of": "robots", "number": {"eqq": 1}}}]),
+    ("assert", [{"id": "a", "count": {"of": "robots", "number": {"tol": 1}}}]),
+    ("assert", [{"count": {"of": "robots", "number": 1}}]),
+    ("assert", [{"id": "a", "each": {"of": "robots", "has": {"radus": 1}}}]),
+    ("assert", [{"id": "a", "world": {"widht": 1}}]),
+    ("assert", [{"id": "a", "sensor": {"of": "robots", "has": {"range_mx": 1}}}]),
+    ("assert", [{"id": "a", "inside": {"of": "robots", "region": [0, 0, 1]}}]),
+    ("assert", [{"id": "a", "inside": {"of": "robots", "what": "gaol", "region": [0, 0, 1, 1]}}]),
+    ("assert", [{"id": "a", "every_scenario": {"that": [{"cuont": {"of": "robots", "number": 1}}]}}]),
+    ("assert", [ARRIVE]),
+    ("episodes", [{"seconds": 3, "assert": [COUNT]}]),
+    ("episodes", [{"seconds": "long", "assert": [ARRIVE]}]),
+    ("episodes", [{"assert": [ARRIVE]}]),
+    ("select", {"boxes": {"shpe": "circle"}}),
+    ("select", {"boxes": {"having": {"radus": 1}}}),
+    ("pins", [{"of": "robots", "facts": ["kinematic"]}]),
+    ("waived", [{"operator": "entry_doubled"}]),
+    ("parameters", {"width": {"default": 3}}),
+    ("parameters", {"width": {"default": 3, "choose": [1], "between": [1, 3]}}),
+    ("drawings", {"plan.png": {"size": [3, 4], "items": [{"kind": "bxo", "at": [1, 2]}]}}),
+]
+
+
+@pytest.fixture(scope="module")
+def validator() -> Any:
+    return jsonschema.Draft202012Validator(case_schema())
+
+
+@pytest.mark.parametrize("case_id", some(all_case_ids()))
+def test_the_schema_accepts_every_case(case_id: str, validator: Any) -> None:
+    problems = [f"{error.json_path}: {error.message[:200]}" for error in validator.iter_errors(raw_case(case_id))]
+    assert problems == []
+
+
+@pytest.mark.parametrize(("key", "value"), REFUSED, ids=[f"{number}-{key}" for number, (key, _) in enumerate(REFUSED)])
+def test_the_schema_and_the_model_refuse_the_same(key: str, value: Any, validator: Any) -> None:
+    right = {**RIGHT_CASE, "assert": [COUNT], "episodes": [{"seconds": "2min", "assert": [ARRIVE]}]}
+    assert validator.is_valid(right)
+    assert instance_of(right).case.id == "own"
+    assert not validator.is_valid({**right, key: value})
+    with pytest.raises(CaseError):
+        instance_of({**right, key: value})
 
 
 def test_a_bad_file_is_named_and_the_others_are_used(tmp_path: Path) -> None:

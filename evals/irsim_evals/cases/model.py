@@ -5,28 +5,28 @@ A text of the form ``$(expression)`` stands for a value of the case's parameters
 
 from __future__ import annotations
 
-import json
 import keyword
 from inspect import cleandoc
 from pathlib import PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, create_model, model_validator
+from pydantic import AfterValidator, Field, create_model, model_validator
 
-from irsim.common.json_output import schema_of_file
+from irsim.options.base import problem
 from irsim_evals.cases.drawing import PICTURES, Drawing, Record
+from irsim_evals.cases.facts import FACTS, GROUPS, OTHER_FACTS
 from irsim_evals.grader.matching import Quantity, Seeds
 from irsim_evals.grader.predicates._base import Predicate, registered
 from irsim_evals.grader.relations import unknown_words
-from irsim_evals.grader.selection import Selector
+from irsim_evals.grader.selection import BUILT_IN, Selection, Selections, Selector
+from irsim_evals.grader.words import BehaviorName, Listed, OneOf, Regex
 
 __all__ = [
-    "Assertion", "Case", "Disposition", "EpisodePlan", "Parameter", "Pin", "Waiver", "case_schema", "schema_text",
+    "Assertion", "Case", "Disposition", "EpisodePlan", "Parameter", "Pin", "Waiver",
 ]  # fmt: skip
 
 Disposition = Literal["build", "ask", "flag"]
 Positive = Annotated[float, Field(gt=0, le=1e6)]
-_NAMED = ("number", "integer", "boolean")
 
 
 class Parameter(Record):
@@ -34,7 +34,7 @@ class Parameter(Record):
 
     default: bool | int | float | str
     """Its value in the case as published."""
-    choose: list[Any] | None = None
+    choose: Annotated[list[Any], Field(min_length=1)] | None = None
     """Values that an instance draws from."""
     between: tuple[Quantity, Quantity] | None = None
     """Range that an instance draws from."""
@@ -73,7 +73,8 @@ class _AssertionBase(Record):
     def _one_predicate(self) -> Any:
         given = [name for name in registered() if getattr(self, _attribute(name)) is not None]
         if len(given) != 1:
-            raise ValueError(f"give exactly one predicate; there are {', '.join(registered())}")
+            said = " and ".join(given) or "none"
+            raise problem("invalid-value", f"give exactly one predicate, not {said}", allowed=list(registered()))
         return self
 
 
@@ -88,6 +89,24 @@ _predicates: dict[str, Any] = {
 Assertion: Any = create_model("Assertion", __base__=_AssertionBase, **_predicates)
 
 
+def _in_its_place(of_episode: bool) -> AfterValidator:
+    """A check that an assertion about an episode is under ``episodes``, and one about something else is not."""
+
+    def check(assertion: Any) -> Any:
+        name, subject = assertion.predicate.name, assertion.predicate.subject
+        if (subject == "episode") != of_episode:
+            where = "assert" if of_episode else "assert of an item of episodes"
+            what = "an episode" if subject == "episode" else "the start or the answer"
+            raise problem("invalid-value", f"{name!r} is about {what}", fix=f"move it to the key {where}")
+        return assertion
+
+    return AfterValidator(check)
+
+
+OfStart = Annotated[Assertion, _in_its_place(False)]
+OfEpisode = Annotated[Assertion, _in_its_place(True)]
+
+
 class EpisodePlan(Record):
     """Episodes that are simulated, and what must happen in each."""
 
@@ -97,24 +116,27 @@ class EpisodePlan(Record):
     """Simulated time [s]; an episode goes on after all robots have arrived."""
     share: Quantity = 1.0
     """Share of the episodes in which each assertion must hold."""
-    behavior: str | None = None
+    behavior: BehaviorName | None = None
     """Behavior that drives the robots instead of theirs, as ``irsim run --behavior`` does."""
-    speed: dict[str, Quantity] = {}
+    speed: dict[Selection, Quantity] = {}
     """Selection → factor of the speed limits of its bodies, such as 0.5 for half as fast."""
-    check: Annotated[list[Assertion], Field(alias="assert")]
+    check: Annotated[list[OfEpisode], Field(alias="assert")]
     """Assertions about each episode."""
 
 
-def _as_list(value: Any) -> Any:
-    return [value] if isinstance(value, str) else value
+_OF_BODIES = (*FACTS, *GROUPS)
+PinnedName = Annotated[str, OneOf("selection", (*BUILT_IN, *OTHER_FACTS), own="selections")]
+Fact = Annotated[
+    str, OneOf("fact", tuple(dict.fromkeys((*_OF_BODIES, *(f for own in OTHER_FACTS.values() for f in own)))))
+]
 
 
 class Pin(Record):
     """Facts that a prompt pins or leaves free, for the proof of the grader."""
 
-    of: str = "all"
+    of: PinnedName = "all"
     """Selection of the bodies; ``world`` for the world itself, ``reply`` and ``text`` for the words of the answer."""
-    facts: Annotated[list[str], BeforeValidator(_as_list)]
+    facts: Annotated[list[Fact], Listed()]
     """Facts: ``count``, ``kinematics``, ``size``, ``shape``, ``pose`` (``position``, ``heading``), ``goal``,
     ``behavior``, ``limits`` (``forward``, ``backward``, ``turn``, …), ``sensors`` (``range``, ``beams``, ``opening``,
     …), ``color``, ``name``, ``way`` (from start to goal), ``cover`` (of what is fixed: it may grow, not shrink or
@@ -123,13 +145,21 @@ class Pin(Record):
     why: str = ""
     """Reason, where it is not plain from the prompt."""
 
+    @model_validator(mode="after")
+    def _of_its_kind(self) -> Pin:
+        known = OTHER_FACTS.get(self.of, _OF_BODIES)
+        for fact in self.facts:
+            if fact not in known:
+                raise problem("unknown-value", f"{fact!r} is not a fact of {self.of}", allowed=known)
+        return self
+
 
 class Waiver(Record):
     """Mutants that change a pinned fact and are right all the same."""
 
     operator: str
     """Name of the operator that makes them."""
-    what: str = ""
+    what: Regex = ""
     """Regular expression that what was changed contains."""
     why: str
     """Reason."""
@@ -186,9 +216,9 @@ class Case(Record):
     """Ways in which the agent may answer: build a scenario, ask first, or say that it cannot be done."""
     seeds: Seeds = [0]
     """Seeds of the worlds that assertions about the start look at."""
-    passable: Annotated[list[str], BeforeValidator(_as_list)] = []
+    passable: Selections = []
     """Selections of the bodies that others may pass through (``unobstructed``); all others must be solid."""
-    late: Annotated[list[str], BeforeValidator(_as_list)] = []
+    late: Selections = []
     """Selections of bodies that never move and may come into the world after its start (``appear_time``)."""
     overlap: bool = False
     """Whether bodies may overlap at the start; ``overlap_free`` then says how often."""
@@ -198,7 +228,7 @@ class Case(Record):
     """Name → expression over parameters and names before it."""
     select: dict[str, Selector] = {}
     """Name → bodies that assertions speak of."""
-    check: Annotated[list[Assertion], Field(alias="assert")] = []
+    check: Annotated[list[OfStart], Field(alias="assert")] = []
     """Assertions about the world at its start, the files and the reply."""
     episodes: list[EpisodePlan] = []
     """Assertions about each episode."""
@@ -214,37 +244,18 @@ class Case(Record):
     @model_validator(mode="after")
     def _unique(self) -> Case:
         names = [item.id for item in [*self.check, *(a for plan in self.episodes for a in plan.check)]]
-        twice = {name for name in names if names.count(name) > 1}
+        twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise ValueError(f"ids of assertions occur twice: {', '.join(sorted(twice))}")
+            raise problem("duplicate-name", f"ids of assertions occur twice: {', '.join(twice)}")
+        last = 1 + len(self.turns)
+        late = next((item.id for item in self.check if (getattr(item.predicate, "turn", 0) or 0) > last), None)
+        if late is not None:
+            raise problem("out-of-range", f"{late!r} is about a later turn than the last one, {last}")
         return self
 
     @model_validator(mode="after")
     def _related(self) -> Case:
         for item in [*self.check, *(a for plan in self.episodes for a in plan.check)]:
-            for problem in unknown_words(item.predicate, self.select):
-                raise ValueError(f"{item.id}: {problem}")
+            for what in unknown_words(item.predicate, self.select):
+                raise problem("unknown-value", f"{item.id}: {what}")
         return self
-
-
-def case_schema() -> dict[str, Any]:
-    """The schema; a text such as ``$(radius)`` or ``90deg`` may stand for any number or flag."""
-    schema = Case.model_json_schema(by_alias=True)
-    opened: dict[str, Any] = _opened(schema)
-    return schema_of_file({**opened, "title": "A case of irsim-evals"})
-
-
-def schema_text() -> str:
-    """The schema as the text of a file."""
-    return json.dumps(case_schema(), indent=1, ensure_ascii=False, sort_keys=True) + "\n"
-
-
-def _opened(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_opened(item) for item in value]
-    if not isinstance(value, dict):
-        return value
-    made = {key: _opened(item) for key, item in value.items()}
-    if made.get("type") in _NAMED:
-        made["type"] = [made["type"], "string"]
-    return made

@@ -65,16 +65,16 @@ def read_case(document: Document, rng: random.Random | None = None) -> tuple[Cas
 def _explain(failure: ValidationError, document: Document, model: type[BaseModel]) -> list[Diagnostic]:
     """The problems of a validation, one for each place."""
     wrong = [item.diagnostic for item in translate(failure, document.data, document, _MAX_PROBLEMS, model)]
-    placed = [
-        replace(
-            item,
-            path=_place(item.path, document.data),
-            code="unknown-key" if item.path[-1:] == ("[key]",) else item.code,
-            edit=None,
-        )
-        for item in wrong
-    ]
+    placed = [_in_file(item, document.data) for item in wrong]
     return list({item.path: item for item in reversed(placed)}.values())[::-1]
+
+
+def _in_file(item: Diagnostic, data: Any) -> Diagnostic:
+    """A problem in the words of the file: a short list lacks an item, and a key may be an unknown one."""
+    path, last = _place(item.path, data), item.path[-1] if item.path else ""
+    if item.code == "missing-key" and isinstance(last, int):
+        return replace(item, code="wrong-length", path=path[:-1], message=f"item {last + 1} is missing", fix=None)
+    return replace(item, path=path, code="unknown-key" if last == "[key]" else item.code, edit=None)
 
 
 def _place(path: Path_, data: Any) -> Path_:

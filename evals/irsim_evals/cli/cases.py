@@ -11,7 +11,7 @@ import typer
 
 from irsim.cli.output import console
 from irsim.diagnostics.errors import ArgumentError
-from irsim_evals.cases.model import schema_text
+from irsim_evals.cases.schema import schema_text
 from irsim_evals.cases.store import Instance, write_given
 from irsim_evals.cli.choice import CasesFolder, GoldsFolder, Wanted, chosen, end_with, read_cases, store_of
 from irsim_evals.grader.outcome import name_of

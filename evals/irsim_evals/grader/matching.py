@@ -81,7 +81,7 @@ Quantity = Annotated[float, Field(allow_inf_nan=False, ge=-MAX_QUANTITY, le=MAX_
 """A number in SI units, or a text with a unit."""
 Counted = Annotated[int, Field(ge=0, le=100_000)]
 """A number of things: steps, episodes, laps, robots."""
-Seeds = Annotated[list[Annotated[int, Field(ge=0, lt=2**53)]], Field(max_length=1000)]
+Seeds = Annotated[list[Annotated[int, Field(ge=0, lt=2**53)]], Field(min_length=1, max_length=1000)]
 """Seeds of episodes or worlds."""
 
 

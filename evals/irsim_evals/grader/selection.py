@@ -13,7 +13,7 @@ from irsim_evals.grader.properties import PROPERTIES, PropertyName, value_of
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.words import Listed, OneOf, Regex
 
-__all__ = ["BUILT_IN", "Selection", "Selector", "select"]
+__all__ = ["BUILT_IN", "Selection", "Selections", "Selector", "select"]
 
 
 _BUILT_IN: dict[str, dict[str, Any]] = {

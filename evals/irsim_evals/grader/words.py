@@ -12,8 +12,9 @@ from pydantic_core import CoreSchema, core_schema
 
 from irsim.diagnostics.diagnostic import nearest
 from irsim.options.base import problem
+from irsim.options.registry import BEHAVIORS
 
-__all__ = ["Listed", "OneOf", "Regex"]
+__all__ = ["BehaviorName", "Listed", "OneOf", "Regex"]
 
 
 @dataclass(frozen=True)
@@ -73,3 +74,5 @@ def _compiles(pattern: str) -> str:
 
 Regex = Annotated[str, AfterValidator(_compiles)]
 """A regular expression."""
+BehaviorName = Annotated[str, OneOf("behavior", tuple(BEHAVIORS.names()), own="behaviors")]
+"""Name of a behavior."""

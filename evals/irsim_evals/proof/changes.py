@@ -8,31 +8,16 @@ from typing import Any
 
 import shapely
 
+from irsim_evals.cases.facts import FACTS, GROUPS, WORLD_FACTS
 from irsim_evals.cases.model import Case, Pin
 from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.selection import select
 
-__all__ = ["FACTS", "GROUPS", "WORLD_FACTS", "changed_facts", "touches"]
+__all__ = ["changed_facts", "touches"]
 
-FACTS = (
-    "count", "role", "kinematics", "shape", "size", "position", "heading", "goal", "goal_heading", "behavior",
-    "options", "forward", "backward", "sideways", "turn", "steer", "acce", "sensor_count", "sensor_kind", "range",
-    "beams", "opening", "sensor_options", "color", "name", "threshold", "passable", "wheelbase", "fov", "tags",
-    "noise", "driven", "way", "random", "cover",
-)  # fmt: skip
-"""Kinds of facts of a body; ``driven`` is whether it has a behavior, ``way`` how its goals lie from its start,
-``random`` whether its place is drawn, ``cover`` whether all that a fixed body covered is covered still."""
 _DERIVED = {"way": ("position", "goal"), "cover": ("position", "size", "shape", "heading", "count")}
 """Kind of fact → kinds that it follows from, so that whoever leaves one of them free leaves it free."""
-GROUPS = {
-    "pose": ("position", "heading"),
-    "limits": ("forward", "backward", "sideways", "turn", "steer", "acce"),
-    "sensors": ("sensor_count", "sensor_kind", "range", "beams", "opening", "sensor_options"),
-}
-"""Short names for several kinds of facts."""
-WORLD_FACTS = ("size", "origin", "times", "modes", "map", "fog")
-"""Kinds of facts of the world."""
 _SAME = 1e-6
 """Difference of two numbers that counts as none."""
 _FULL_TURN = 6.2

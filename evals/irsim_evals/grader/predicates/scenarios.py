@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import itertools
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import field_validator
+from pydantic import AfterValidator, ValidationInfo
 
+from irsim.diagnostics.diagnostic import nearest
+from irsim.options.base import problem
 from irsim_evals.grader.artefact import scenarios_in
 from irsim_evals.grader.matching import Counted, Match, Quantity, matches
-from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, Predicate, register, registered
+from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register, registered
 from irsim_evals.grader.runs_of_answers import Runs, runs_of
-from irsim_evals.grader.words import Regex
+from irsim_evals.grader.words import BehaviorName, Regex
 
 if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
@@ -25,6 +27,16 @@ _SEEDS = (0, 1)
 """Seeds of the worlds that are compared."""
 
 
+def _known(item: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
+    known = {name: one for name, one in registered().items() if one.subject in ("scene", "seeds")}
+    name = next(iter(item), "")
+    if len(item) != 1 or name not in known:
+        near = nearest(name, known)
+        message = f"give exactly one predicate about the world, not {' and '.join(item) or 'none'}"
+        raise problem("unknown-value", message, allowed=list(known), fix=f"write {near}" if near else None)
+    return {name: known[name].model_validate(item[name], context=info.context)}
+
+
 @register("every_scenario")
 class EveryScenario(AnswerPredicate):
     """Every scenario file that the agent left is valid and fulfils some assertions about its world."""
@@ -33,15 +45,8 @@ class EveryScenario(AnswerPredicate):
 
     number: Match = Match(ge=1)
     """Accepted numbers of scenario files."""
-    that: list[dict[str, Any]]
+    that: list[Annotated[dict[str, Any], AfterValidator(_known)]]
     """Assertions about the world: each is the name of a predicate with its keys."""
-
-    @field_validator("that")
-    @classmethod
-    def _known(cls, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
-        for item in value:
-            _predicate(item)
-        return value
 
     def observe(self, material: Material) -> Observation:
         """Open each of them."""
@@ -55,7 +60,7 @@ class EveryScenario(AnswerPredicate):
             except LookupError as error:
                 return Observation(False, expected, str(error), name)
             for item in self.that:
-                predicate: Any = _predicate(item)
+                predicate: Any = next(iter(item.values()))
                 scene = predicate.subject == "scene"
                 observation: Observation = predicate.observe(one, one.scene(_SEED)) if scene else predicate.observe(one)
                 if not observation.passed:
@@ -69,16 +74,6 @@ def scenario_names(material: Material) -> list[str]:
     return sorted(name for name in scenarios_in(material.texts) if name not in material.given)
 
 
-def _predicate(item: dict[str, Any]) -> Predicate:
-    if len(item) != 1:
-        raise ValueError("give exactly one predicate in each item")
-    ((name, keys),) = item.items()
-    known = registered()
-    if name not in known or known[name].subject not in ("scene", "seeds"):
-        raise ValueError(f"no predicate about a world is called {name!r}")
-    return known[name].model_validate(keys)
-
-
 @register("comparison")
 class Comparison(AnswerPredicate):
     """Behaviors are compared fairly: with the same scenarios but for the behavior, the same seeds, the same horizon."""
@@ -87,7 +82,7 @@ class Comparison(AnswerPredicate):
 
     robots: list[Counted]
     """Numbers of robots; there is at least one scenario for each."""
-    behaviors: list[str]
+    behaviors: list[BehaviorName]
     """Behaviors that are compared: each has a file of its own for each number of robots, or what runs the scenarios
     sets it."""
     episodes: Counted
