@@ -17,7 +17,15 @@ from tests.warm import warm
 pytestmark = pytest.mark.one_python
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "AGENTS.md", "evals/README.md", "irsim/core/README.md")
+PAGES = (
+    "README.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "AGENTS.md",
+    "evals/README.md",
+    "evals/write-a-case.md",
+    "irsim/core/README.md",
+)
 TOP = r"(?:irsim|mcp_server|tests|skills|templates|schema|evals|\.ci|\.github)"
 each = pytest.mark.parametrize("name", PAGES)
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -29,7 +29,7 @@ def values_of(raw: Mapping[str, Any], rng: random.Random | None, problems: list[
 
     Args:
         raw: Content of the file.
-        rng: Draws the values; None for those of the case as published.
+        rng: Draws the values; None for the case as published.
         problems: Gets what is wrong with an expression.
     """
     values: dict[str, Any] = {}

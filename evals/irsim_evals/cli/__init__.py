@@ -9,6 +9,7 @@ from irsim.cli.output import prepare_streams
 from irsim_evals.cli.cases import cases, export, schema
 from irsim_evals.cli.check import check
 from irsim_evals.cli.grade import grade
+from irsim_evals.cli.language import predicates, properties, selections
 from irsim_evals.cli.prove import prove
 from irsim_evals.cli.report import compare, report
 from irsim_evals.cli.run import run
@@ -23,7 +24,23 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (cases, export, grade, run, report, compare, check, prove, schema):
+for _command in (
+    cases,
+    export,
+    grade,
+    run,
+    report,
+    compare,
+    check,
+    prove,
+    predicates,
+    selections,
+    properties,
+    predicates,
+    selections,
+    properties,
+    schema,
+):
     app.command()(handle_errors(_command))
 
 
