@@ -39,6 +39,9 @@ SLIPS: list[tuple[dict[str, Any], str]] = [
     ({"states": {"of": "robots", "property": "radus", "about": "radius"}}, "radius"),
     ({"sensor": {"of": "robots", "has": {"range_mx": 4}}}, "range_max"),
     ({"world": {"widht": 10}}, "width"),
+    ({"each": {"of": "robots", "has": {"diameter": 0.6}}}, "radius"),
+    ({"each": {"of": "robots", "has": {"drive": "diff"}}}, "kinematics"),
+    ({"sensor": {"of": "robots", "has": {"beams": 90}}}, "number"),
 ]
 
 
@@ -66,6 +69,9 @@ def test_an_expression_that_python_cannot_read_is_refused() -> None:
         ("pins: [{of: world, facts: kinematics}]", "2:8", "'kinematics' is not a fact of world"),
         ("pins: [{of: robtos, facts: size}]", "2:13", "fix: write robots"),
         ("free: [{facts: [name, colour]}]", "2:23", "fix: write color"),
+        ("free: [{facts: [colour, drive]}]", "2:25", "fix: write kinematics"),
+        ("assert: [{id: a, count: {of: all, number: {min: 1}}}]", "2:44", "fix: rename it to 'ge'"),
+        ("assert: [{id: a, swap: {of: all}}]", "2:18", "fix: irsim-evals predicates says what"),
         ("assert: [{id: a, says: {any_of: [x], turn: 2}}]", "1:1", "'a' is about a later turn than the last one, 1"),
         ("assert: [{id: a, inside: {of: all, region: [0, 0, 1]}}]", "2:44", "item 4 is missing"),
         ("assert: [{id: a, every_scenario: {that: [{cuont: {}}]}}]", "2:42", "fix: write count"),

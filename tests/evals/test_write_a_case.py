@@ -11,7 +11,7 @@ import yaml
 
 from irsim_evals.cases.model import Assertion
 from irsim_evals.cases.store import all_case_ids, case_of
-from irsim_evals.cli.language import example_of
+from irsim_evals.cli.language import examples
 from irsim_evals.grader.predicates._base import registered
 from irsim_evals.grader.properties import PROPERTIES
 from irsim_evals.grader.selection import BUILT_IN, Selector
@@ -79,10 +79,10 @@ def test_the_example_of_a_predicate_can_be_used() -> None:
         for item in [*case.check, *(one for plan in case.episodes for one in plan.check)]
     }
     assert len(used) > 40
-    for name in used:
-        found = example_of(name)
-        assert found is not None
-        assertion = Assertion.model_validate(yaml.safe_load(f"{{id: a-name, {name}: {found[1]}}}"))
+    found = examples()
+    assert set(found) == used
+    for name, (_, text) in found.items():
+        assertion = Assertion.model_validate(yaml.safe_load(f"{{id: a-name, {name}: {text}}}"))
         assert assertion.predicate.name == name
 
 

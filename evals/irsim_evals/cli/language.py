@@ -27,7 +27,7 @@ from irsim_evals.grader.properties import PROPERTIES
 from irsim_evals.grader.selection import BUILT_IN, Selector
 from irsim_evals.grader.words import Listed, OneOf, Regex
 
-__all__ = ["example_of", "predicates", "properties", "selections"]
+__all__ = ["examples", "predicates", "properties", "selections"]
 
 _SUBJECTS = {
     "scene": "the world at its start", "seeds": "worlds of several seeds",
@@ -57,7 +57,7 @@ def predicates(
     if name not in known:
         raise ArgumentError(f"no predicate is called {name!r}", suggestion(name, known, "irsim-evals predicates"))
     one = known[name]
-    example = example_of(name)
+    example = examples().get(name)
     lines = [f"{name}: {_plain(one.__doc__)}", f"It is about {_SUBJECTS[one.subject]}.", "", *_keys(one), ""]
     lines += [f"example ({example[0]}): {{id: a-name, {name}: {example[1]}}}", ""] if example else []
     return _show([*lines, _NUMBERS, _MATCH, *_keys(Match)])
@@ -89,22 +89,20 @@ def properties() -> None:
     _show(lines)
 
 
-def example_of(name: str) -> tuple[str, str] | None:
-    """The shortest use of a predicate in a published case: the id of the case, and the value as one line of YAML.
+def examples() -> dict[str, tuple[str, str]]:
+    """Predicate → its shortest use in a published case: the id of the case, and the value as one line of YAML.
 
     One that needs no selections of its own case is preferred.
     """
-    found: list[tuple[bool, int, str, str]] = []
+    found: dict[str, list[tuple[bool, int, str, str]]] = {}
     for case_id in all_case_ids(PUBLISHED):
-        raw = raw_case(case_id)
-        plans = [raw, *raw.get("episodes", ())]
-        used = [item[name] for plan in plans for item in plan.get("assert", ()) if name in item]
-        if used:
-            values = case_of(case_id).values
-            for text in (_line(substitute(item, values)) for item in used):
+        raw, values = raw_case(case_id), case_of(case_id).values
+        for item in [item for plan in (raw, *raw.get("episodes", ())) for item in plan.get("assert", ())]:
+            for name in registered().keys() & item.keys():
+                text = _line(substitute(item[name], values))
                 own = bool(set(re.findall(r"[\w-]+", text)) & set(raw.get("select", ())))
-                found.append((own, len(text), case_id, text))
-    return min(found)[2:] if found else None
+                found.setdefault(name, []).append((own, len(text), case_id, text))
+    return {name: min(uses)[2:] for name, uses in found.items()}
 
 
 def _line(value: Any) -> str:

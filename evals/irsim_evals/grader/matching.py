@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WrapValidator, model_validator
 
@@ -167,6 +167,9 @@ class Match(BaseModel):
     ``world``. Where bodies of a selection differ, `ge` and `le` hold for each of them."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    also_called: ClassVar[dict[str, str]] = {"min": "ge", "max": "le", "equals": "eq", "least": "ge", "most": "le"}
+    """Words of authors → keys, for messages."""
 
     eq: Annotated[Any, BeforeValidator(_value)] = None
     """Equal, within `tol` or the tolerance of the kind; a list is compared element by element."""

@@ -251,7 +251,7 @@ PROPERTIES: dict[str, Property] = {
 """Name → property."""
 
 
-PropertyName = Annotated[str, OneOf("property", PROPERTIES)]
+PropertyName = Annotated[str, OneOf("property", PROPERTIES, listed_by="irsim-evals properties explains them all")]
 """Name of a property that there is."""
 
 

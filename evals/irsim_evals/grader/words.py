@@ -17,6 +17,14 @@ from irsim.options.registry import BEHAVIORS
 __all__ = ["BehaviorName", "Listed", "OneOf", "Regex"]
 
 
+_MEANT = {
+    "diameter": ("radius",), "drive": ("kinematics",), "speed": ("forward",), "max_speed": ("forward",),
+    "number": ("count",), "size": ("radius",), "position": ("x",), "goal": ("goal_x",), "angle": ("heading", "opening"),
+    "range": ("range_max",), "beams": ("number",), "walls": ("statics",), "people": ("movers",),
+}  # fmt: skip
+"""Words of authors → what they mean, the first that is known where they are used."""
+
+
 @dataclass(frozen=True)
 class OneOf:
     """Metadata of a text that is one of some words.
@@ -26,11 +34,13 @@ class OneOf:
         words: The words.
         own: Key of the validation context with further words, which each case defines. Without a context these cannot
             be checked.
+        listed_by: Where all words are explained, if no similar one is known.
     """
 
     kind: str
     words: Collection[str] = field(hash=False)
     own: str = ""
+    listed_by: str | None = None
 
     def _check(self, word: str, info: core_schema.ValidationInfo) -> str:
         further: Mapping[str, Collection[str]] | None = info.context
@@ -39,9 +49,9 @@ class OneOf:
         known = [*(further or {}).get(self.own, ()), *self.words]
         if word in known:
             return word
-        near = nearest(word, known)
-        message = f"there is no {self.kind} {word!r}"
-        raise problem("unknown-value", message, allowed=known, fix=f"write {near}" if near else None, replace=near)
+        near = next((meant for meant in _MEANT.get(word, ()) if meant in known), None) or nearest(word, known)
+        fix = f"write {near}" if near else self.listed_by
+        raise problem("unknown-value", f"there is no {self.kind} {word!r}", allowed=known, fix=fix, replace=near)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return core_schema.with_info_after_validator_function(self._check, handler(source))

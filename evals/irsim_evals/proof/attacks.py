@@ -13,10 +13,11 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from irsim_evals.cases.facts import FACTS
 from irsim_evals.cases.model import Case
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.selection import select
-from irsim_evals.proof.changes import FACTS, touches
+from irsim_evals.proof.changes import touches
 from irsim_evals.proof.operators import Change, Data, each_entry, entries, operator
 
 __all__ = ["ATTACKS", "EVERYWHERE", "MOTION", "attack", "is_wrong", "together"]

@@ -31,6 +31,7 @@ def translate(
     most: int,
     root: type[BaseModel] = Scenario,
     special: Special = lambda _: None,
+    each: bool = False,
 ) -> list[Finding]:
     """Findings for the errors of a validation, at most ``most`` of them.
 
@@ -41,6 +42,7 @@ def translate(
         most: Largest number of findings.
         root: Model of the whole document.
         special: Explains values that may have several forms, for each of which pydantic lists an error.
+        each: Name each element of a list that is wrong, instead of the first and their number.
     """
     findings: dict[tuple[str, Path], list[Finding]] = {}
     for item in failure.errors(include_url=False):
@@ -49,7 +51,7 @@ def translate(
                 findings["", own.path] = [Finding(own)]
             continue
         path = _path(item["loc"])
-        siblings = findings.setdefault((item["type"], _list_path(path)), [])
+        siblings = findings.setdefault((item["type"], path if each else _list_path(path)), [])
         if siblings and _list_path(path) != path:
             siblings.append(siblings[0])  # only counted
         elif len(findings) <= most:
