@@ -24,6 +24,12 @@ _STRAIGHT = 1e-6
 """Largest deviation [m] of an outline from a rectangle that counts as none."""
 
 
+_SIDES = {
+    "sideways": ("leftward", "rightward"), "turn": ("turn_left", "turn_right"), "steer": ("steer_left", "steer_right"),
+}  # fmt: skip
+"""Range → those to the two sides."""
+
+
 @dataclass(frozen=True)
 class Box:
     """A rectangular footprint.
@@ -59,7 +65,8 @@ class GradedBody:
         extent: Length and width in the body frame, along and across its heading.
         ranges: Greatest speeds ``forward``, ``backward``, ``leftward``, ``rightward`` [m/s], turn rates ``turn_left``,
             ``turn_right`` [rad/s] and steering angles ``steer_left``, ``steer_right`` [rad] that its limits, its drive
-            and its behavior allow; those that its drive has and that something limits.
+            and its behavior allow, and the larger ones of two sides, ``sideways``, ``turn``, ``steer``; those that its
+            drive has and that something limits.
         avoided: Role of the objects that it avoids, or ``all``; None if it avoids none.
         sensors: Options of each sensor as the simulator holds them.
         color: As ``#rrggbb`` where it is a color; None for the color of its role.
@@ -116,34 +123,6 @@ class GradedBody:
     def goal(self) -> list[float] | None:
         """Its last goal."""
         return self.goals[-1] if self.goals else None
-
-    @property
-    def forward(self) -> float | None:
-        """Greatest speed ahead [m/s]; None where its drive has no such control, as for the ranges below."""
-        return self._range("forward")
-
-    @property
-    def backward(self) -> float | None:
-        """Greatest speed backwards [m/s]."""
-        return self._range("backward")
-
-    @property
-    def sideways(self) -> float | None:
-        """Greatest speed sideways [m/s]."""
-        return self._range("leftward", "rightward")
-
-    @property
-    def turn(self) -> float | None:
-        """Greatest turn rate [rad/s]."""
-        return self._range("turn_left", "turn_right")
-
-    @property
-    def steer(self) -> float | None:
-        """Greatest steering angle [rad]."""
-        return self._range("steer_left", "steer_right")
-
-    def _range(self, *names: str) -> float | None:
-        return max((self.ranges[name] for name in names if name in self.ranges), default=None)
 
     @property
     def slowest(self) -> float:
@@ -222,7 +201,13 @@ def _ranges(drive: Any, low: list[float], high: list[float], behavior: Any) -> d
         turns = {"turn_left": high[drive.speeds], "turn_right": -low[drive.speeds]}
     most = behavior.top_speed_of_its_own() if isinstance(behavior, BehaviorOptions) else math.inf
     ranges = {name: max(0.0, min(speed, most)) for name, speed in speeds.items()}
-    return ranges | {name: max(0.0, turn) for name, turn in turns.items() if turn < math.inf}
+    ranges |= {name: max(0.0, turn) for name, turn in turns.items() if turn < math.inf}
+    larger = {
+        name: max(ranges[side] for side in sides if side in ranges)
+        for name, sides in _SIDES.items()
+        if any(side in ranges for side in sides)
+    }
+    return ranges | larger
 
 
 def _color(color: Any) -> str | None:

@@ -138,10 +138,6 @@ def _of_body(body: GradedBody, kind: str) -> Any:
         return [body.behavior, body.record.wander, body.record.loop]
     if kind == "driven":
         return body.behavior is not None
-    if kind == "options":
-        return body.options
-    if kind == "passable":
-        return body.passable
     if kind in GROUPS["sensors"]:
         return _of_sensors(body.sensors, kind)
     if kind == "noise":
@@ -152,11 +148,9 @@ def _of_body(body: GradedBody, kind: str) -> Any:
         return [None if body.record.fov is None else min(body.record.fov, _FULL_TURN), body.record.fov_radius]
     if kind == "threshold":
         return body.record.goal_threshold
-    if kind == "wheelbase":
-        return body.record.wheelbase
-    if kind == "tags":
-        return list(body.record.tags)
-    return getattr(body, kind)
+    if kind in ("wheelbase", "tags"):
+        return getattr(body.record, kind)
+    return body.ranges.get(kind) if kind in GROUPS["limits"] else getattr(body, kind)
 
 
 def _heading(body: GradedBody) -> list[float]:

@@ -117,7 +117,7 @@ def _measures(scene: GradedScene, what: str) -> list[float]:
     if what == "diameter":
         return [2 * body.radius for body in bodies if body.radius is not None]
     if what == "speed":
-        speeds = [body.forward for body in bodies if body.forward is not None]
+        speeds = [body.ranges["forward"] for body in bodies if "forward" in body.ranges]
         options = [float(b.options[k]) for b in bodies for k in ("vmax", "vxmax", "max_speed") if b.options.get(k)]
         return speeds + options
     if what == "range":
