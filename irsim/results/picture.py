@@ -197,6 +197,8 @@ class LidarHits(Result):
 
     name: str
     """Name of the object that carries the lidar."""
+    sensor: int | None = None
+    """Its number among the sensors of the object, if these are several."""
     beams: int
     """Number of its beams."""
     hit: int

@@ -44,6 +44,8 @@ _MIN_SPEED = 1e-3
 _CONTACTS = ("collision", *BETWEEN_STEPS)
 """Kinds of events of the view ``collisions``."""
 _NOT_RECORDED = "not recorded"
+_MIN_STEERED_SPEED = 0.01
+"""Speed [m/s] from which on the path of a car tells its steering angle."""
 _MAX_PARTNERS = 5
 """Number of objects of each kind that ``closest`` lists for one object."""
 
@@ -73,9 +75,9 @@ def inspect_run(
             ``speeds``: path length and speeds of each robot and its longest stop, until it arrived (or of all requested
             steps if they begin after its arrival). ``speed`` is a magnitude, never negative;
             ``min_forward_speed`` is the velocity along the heading, negative where the robot drove backwards (None for
-            omnidirectional drives); ``max_turn_rate`` is a magnitude, too. ``zones``: who was in a region of
-            ``world.zones`` from when to when, and who crossed a line in which direction; ``sight``: who saw whom from
-            when to when.
+            omnidirectional drives); ``max_turn_rate`` and ``max_steering`` (angle of a car's wheels [rad]) are
+            magnitudes, too. ``zones``: who was in a region of ``world.zones`` from when to when, and who crossed a
+            line in which direction; ``sight``: who saw whom from when to when.
         robot: Name of one robot, or of another object; ``all`` (all objects that can move), ``robots``, ``obstacles``
             (that can move), a tag, or several of these, separated by commas; default: all robots, in ``zones``
             and ``sight`` all objects.
@@ -285,10 +287,14 @@ def _speeds_of_robots(asked: Question) -> Table:
         mean = way / (max(1, len(speeds) - 1) * trace.step_time)
         fast: list[Cell] = [rounded(mean), rounded(float(speeds.max()))]
         turning = max((abs(_turn_rate(trace, index, row)) for row in range(asked.first, last + 1)), default=0.0)
-        extremes: list[Cell] = [_least_forward(asked, index, last), rounded(turning)]
+        extremes: list[Cell] = [
+            _least_forward(asked, index, last),
+            rounded(turning),
+            _most_steering(asked, index, last),
+        ]
         rows.append([trace.names[index], rounded(way), *fast, *extremes, *stand, bool(arrived.any())])
     columns = [
-        *("robot", "path_length", "mean_speed", "max_speed", "min_forward_speed", "max_turn_rate"),
+        *("robot", "path_length", "mean_speed", "max_speed", "min_forward_speed", "max_turn_rate", "max_steering"),
         *("stood", "stood_from_step", "arrived"),
     ]
     return paged(asked, columns, rows)
@@ -316,6 +322,24 @@ def _speeds(trace: Trace, index: int, first: int, last: int) -> Floats:
         before = np.concatenate([here[:1], before])
     speeds: Floats = np.linalg.norm(here - before, axis=1) / trace.step_time
     return speeds
+
+
+def _most_steering(asked: Question, index: int, last: int) -> Cell:
+    """Largest steering angle [rad] of a car, from the path of its rear axle; None for other drives and while it stands.
+
+    A car with wheelbase L that drives at speed v and turns at rate w steers by atan(L w / v).
+    """
+    record = asked.run.resolved["objects"][index]
+    drive = record.get("kinematics")
+    if not isinstance(drive, dict) or drive.get("name") != "acker":
+        return None
+    wheelbase, trace = float(record.get("wheelbase") or 1.0), asked.trace
+    angles = [
+        math.atan2(wheelbase * abs(_turn_rate(trace, index, row)), speed)
+        for row, speed in zip(range(asked.first, last + 1), _speeds(trace, index, asked.first, last), strict=True)
+        if speed > _MIN_STEERED_SPEED
+    ]
+    return rounded(max(angles)) if angles else None
 
 
 def _least_forward(asked: Question, index: int, last: int) -> Cell:

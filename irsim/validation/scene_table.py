@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 import irsim._core as core
+from irsim.common.outline import outline
 from irsim.common.text import plural
 from irsim.episodes.scene_summary import called
 from irsim.results.picture import LidarHits, SceneRow, SceneTable
@@ -104,7 +105,9 @@ def _row(
         role=first.role,
         drive=None if first.static or first.kinematics is None else str(getattr(first.kinematics, "name", "")),
         behavior=None if first.static or behavior is None else _behavior(behavior) + _task(first),
-        footprint=footprint_of(first) + (", each its own" if differ else ""),
+        footprint=footprint_of(first)
+        + (", each its own" if differ else "")
+        + _reference_point(first, state, shown * objects + entry[0]),
         poses=[_pose(state.pose[shown * objects + k]) for k in some],
         goals=[
             None if not goals else _goal(scenario.objects[k], goals[0]) for k, goals in zip(some, ways, strict=True)
@@ -120,6 +123,14 @@ def _row(
         starts=_range(starts),
         ends=None if first.static else _range(ends),
     )
+
+
+def _reference_point(record: ObjectRecord, state: core.State, row: int) -> str:
+    """Where a car has the point that its pose is about, and how far its body reaches behind and ahead of it."""
+    if getattr(record.kinematics, "name", None) != "acker" and getattr(record.shape, "wheelbase", None) is None:
+        return ""
+    low, high = outline(state, row).box()
+    return f" (its pose is that of the rear axle; body {low[0]:+.2f} to {high[0]:+.2f} m)"
 
 
 def footprint_of(record: ObjectRecord) -> str:
@@ -200,10 +211,14 @@ _MAX_BEAMS = 200_000
 
 def _sensor(sensor: Any) -> str:
     """A sensor in words: ``fmcw_lidar2d 120 deg, 10 m, 241 beams, motion_compensate, velocity noise 0.05``."""
+    x, y, turn = (*(float(value) for value in getattr(sensor, "offset", None) or ()), 0.0, 0.0, 0.0)[:3]
+    place = f"mounted at ({x:+.2f}, {y:+.2f}) m, " if x or y else ""
+    place += f"turned by {turn:+.2f} rad, " if turn else ""
     if not getattr(sensor, "is_lidar", False):
-        return str(sensor.name)
+        return f"{sensor.name} {place}".rstrip(", ")
     facts = [f"{sensor.name} {np.degrees(sensor.angle_range):.3g} deg", f"{sensor.range_max:g} m"]
     facts.append(plural(sensor.number, "beam"))
+    facts += [place.removesuffix(", ")] if place else []
     if getattr(sensor, "motion_compensate", False):
         facts.append("motion_compensate")
     if sensor.noise:
@@ -214,7 +229,7 @@ def _sensor(sensor: Any) -> str:
 
 
 def lidar_hits(scenario: ResolvedScenario, seed: int) -> list[LidarHits]:
-    """Count the beams of the first lidars that hit each object at the start; empty if there are very many beams.
+    """Count the beams of each of the first lidars that hit each object at the start; empty if there are too many.
 
     Args:
         scenario: The scenario, in which there is room for every object.
@@ -222,9 +237,7 @@ def lidar_hits(scenario: ResolvedScenario, seed: int) -> list[LidarHits]:
     """
     carriers = [k for k, record in enumerate(scenario.objects) if _lidars(record.sensors)][:MAX_LIDARS]
     records = [
-        replace(
-            record, sensors=_lidars(record.sensors)[:1] if k in carriers else [], behavior=None, group_behavior=None
-        )
+        replace(record, sensors=_lidars(record.sensors) if k in carriers else [], behavior=None, group_behavior=None)
         for k, record in enumerate(scenario.objects)
     ]
     if not carriers or sum(sensor.number for record in records for sensor in _lidars(record.sensors)) > _MAX_BEAMS:
@@ -238,8 +251,11 @@ def lidar_hits(scenario: ResolvedScenario, seed: int) -> list[LidarHits]:
         hits = Counter(state.hits[first : first + count].tolist())
         missed = hits.pop(-1, 0)
         names = [(called(scenario, scenario.objects[k].name).strip("'"), beams) for k, beams in hits.most_common()]
-        rows.append(LidarHits(name=records[row].name, beams=count, hit=count - missed, hits=dict(names)))
-    return rows
+        sensors = scenario.objects[row].sensors
+        place = sum(one.name == records[row].name for one in rows)
+        which = sensors.index(_lidars(sensors)[place]) if len(sensors) > 1 else None
+        rows.append(LidarHits(name=records[row].name, sensor=which, beams=count, hit=count - missed, hits=dict(names)))
+    return rows[:MAX_LIDARS]
 
 
 def _lidars(sensors: Iterable[Any]) -> list[Any]:

@@ -55,7 +55,8 @@ def _row_text(row: Mapping[str, Any], labels: Mapping[str, str], seeds: int) -> 
     if row["drive"]:
         facts.append(row["behavior"] or "no behavior")
         facts.append("vel_max [{}]".format(", ".join(f"{value:g}" for value in row["vel_max"])))
-    facts += row["sensors"]
+    several = len(row["sensors"]) > 1
+    facts += [f"sensor {k}: {sensor}" if several else sensor for k, sensor in enumerate(row["sensors"])]
     if row["appear_time"]:
         facts.append(f"appears at {seconds(row['appear_time'])}")
     if row["start_time"] > row["appear_time"]:
@@ -94,7 +95,8 @@ def _hits_text(lidar: Mapping[str, Any]) -> str:
     """How many beams of a lidar hit something at the start, and whom."""
     hits = [f"{clean(name)!r} {beams}" for name, beams in lidar["hits"].items()]
     whom = f": {', '.join(hits[:_MAX_HITS])}{', ...' if len(hits) > _MAX_HITS else ''}" if hits else ""
-    return f"Lidar of {clean(lidar['name'])!r}: {lidar['hit']} of {lidar['beams']} beams hit{whom}"
+    which = "Lidar" if lidar["sensor"] is None else f"Sensor {lidar['sensor']}"
+    return f"{which} of {clean(lidar['name'])!r}: {lidar['hit']} of {lidar['beams']} beams hit{whom}"
 
 
 def _passage_text(passage: Mapping[str, Any]) -> str:
@@ -109,4 +111,4 @@ def _passage_text(passage: Mapping[str, Any]) -> str:
 
 
 def _box(box: Sequence[float]) -> str:
-    return "x {:.1f}..{:.1f} y {:.1f}..{:.1f}".format(*box)
+    return "x {:.2f}..{:.2f} y {:.2f}..{:.2f}".format(*box)

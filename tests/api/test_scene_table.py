@@ -164,3 +164,41 @@ def test_the_passage_is_that_of_the_route_that_the_robot_plans(tmp_path: Path) -
                            " [12, 0], [12, 8], [0, 8]]}}")  # fmt: skip
     by_name = {line.split("'")[1]: line for line in lines(upper, tmp_path).splitlines() if "passage" in line}
     assert "1.5 m at (" in by_name["slim"]
+
+
+CAR = """\
+world: {width: 16, height: 10}
+robot:
+  - name: car
+    kinematics: {name: acker}
+    shape: {name: rectangle, length: 4.2, width: 1.8, wheelbase: 2.6}
+    state: [2.117, 3, 0]
+    goal: [12, 7]
+    behavior: {name: follow}
+    sensors:
+      - {name: lidar2d, range_max: 6, angle_range: 2.0, number: 50, offset: [3.4, 0, 0]}
+      - {name: contact2d}
+      - {name: lidar2d, range_max: 3, angle_range: 2.0, number: 20, offset: [-0.8, 0.2, 3.1416]}
+obstacle: {name: box, shape: {name: rectangle, length: 1, width: 1}, state: [8, 3, 0.3]}
+"""
+
+
+def test_each_of_several_sensors_has_its_mounting_pose_and_its_hits(tmp_path: Path) -> None:
+    table = lines(CAR, tmp_path)
+    assert "sensor 0: lidar2d 115 deg, 6 m, 50 beams, mounted at (+3.40, +0.00) m, sensor 1: contact2d" in table
+    assert "sensor 2: lidar2d 115 deg, 3 m, 20 beams, mounted at (-0.80, +0.20) m, turned by +3.14 rad" in table
+    front, rear = (line for line in table.splitlines() if " of 'car': " in line)
+    assert front.startswith("Sensor 0 of 'car': ")
+    assert "'box'" in front
+    assert rear == "Sensor 2 of 'car': 0 of 20 beams hit"
+
+
+def test_the_row_of_a_car_says_where_its_pose_is_and_how_far_its_body_reaches(tmp_path: Path) -> None:
+    table = lines(CAR, tmp_path)
+    assert "rectangle 4.2 x 1.8 (its pose is that of the rear axle; body -0.80 to +3.40 m), follow" in table
+    assert "'car' at (2.12, 3.00)" in table
+
+
+def test_ranges_over_seeds_are_told_to_the_centimetre(tmp_path: Path) -> None:
+    (line,) = [line for line in lines(SWAP, tmp_path).splitlines() if "'robot_0'" in line]
+    assert all(len(value.rpartition(".")[2]) == 2 for value in line.split(" starts x ")[1].split(" y ")[0].split(".."))

@@ -127,6 +127,58 @@ def test_a_view_sector_opens_along_the_heading(make: Make) -> None:
     assert isinstance(whole, Circle)
 
 
+WATCHED = """
+world: {width: 10, height: 10%s}
+robot: {kinematics: {name: diff}, state: [5, 1, 1.5707963], fov: 1.2, fov_radius: 6, fov_occlusion: %s,
+        plot: {show_fov: true}}
+obstacle:
+  - {name: box, shape: {name: rectangle, length: 1, width: 1}, state: [5, 4, 0]}
+  - {name: ghost, shape: {name: rectangle, length: 1, width: 1}, state: [4, 3, 0], unobstructed: true}
+"""
+
+
+def seen_area(env: Any) -> Any:
+    """The area that the picture shows as seen by the robot."""
+    (mark,) = scene(env).of(0, "fov")
+    return shapely.Polygon(mark.geometry.rings[0])
+
+
+def test_a_view_with_occlusion_is_drawn_as_far_as_it_sees(make: Make) -> None:
+    area = seen_area(make(WATCHED % ("", "true")))
+    for seen, (x, y) in ((True, (5, 3.4)), (False, (5, 5)), (False, (5, 6.9)), (True, (3.6, 5)), (True, (4, 3))):
+        assert area.contains(shapely.Point(x, y)) == seen, (x, y)
+    (whole,) = scene(make(WATCHED % ("", "false"))).of(0, "fov")
+    assert isinstance(whole.geometry, Sector)  # without occlusion it sees through bodies
+
+
+def test_a_view_ends_at_a_map_and_follows_what_moves(make: Make) -> None:
+    env = make(WATCHED % (", obstacle_map: {name: perlin, resolution: 0.25, fill: 0.3, seed: 3}", "true"))
+    area, grid = seen_area(env), env.simulation.scenario.grid
+    assert 0 < area.area < 0.5 * 1.2 * 36 - 2
+    solid = [(x, y) for x in range(40) for y in range(40) if grid.cells.occupied[x, y]]
+    inside = [cell for cell in solid if area.contains(shapely.Point((cell[0] + 0.5) / 4, (cell[1] + 0.5) / 4))]
+    assert len(inside) <= 1  # rays are half a degree apart
+    moving = make(WATCHED % ("", "true"))
+    before = seen_area(moving)
+    moving.obstacle_list[0].set_state([3, 4, 0])
+    after = seen_area(moving)
+    assert not before.contains(shapely.Point(5, 6))
+    assert after.contains(shapely.Point(5, 6))
+
+
+def test_a_goal_without_heading_is_drawn_without_one(make: Make) -> None:
+    text = (
+        "robot: {kinematics: {name: diff}, shape: {name: rectangle, length: 2, width: 1}, state: [2, 2, 0], goal: %s,"
+    )
+    free, turned = (
+        next(scene(make(f"{text} plot: {{show_goal: true}}}}" % goal)).of(0, "goal")).geometry
+        for goal in ("[8, 8]", "[8, 8, 1.5707963]")
+    )
+    assert (free.x, free.y, free.radius) == (8, 8, 0.5)
+    low, high = turned.rings[0].min(axis=0), turned.rings[0].max(axis=0)
+    assert high - low == pytest.approx([1, 2])
+
+
 def test_shapes_keep_their_kind(make: Make) -> None:
     env = make("""
 obstacle:

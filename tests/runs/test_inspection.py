@@ -164,6 +164,31 @@ def test_speeds_tell_reversing_and_turning(workspace: Path) -> None:
     assert first_row(recorder.folder, view="speeds", to_step=5)["min_forward_speed"] == 0.5
 
 
+@pytest.mark.parametrize("mode", ["steer", "angular"])
+def test_speeds_tell_the_steering_angle_of_a_car(workspace: Path, mode: str) -> None:
+    text = f"""
+world: {{width: 30, height: 20, time_limit: 3}}
+robot:
+  name: car
+  kinematics: {{name: acker, mode: {mode}, psi_max: 0.7}}
+  shape: {{name: rectangle, length: 4, width: 1.8, wheelbase: 2.5}}
+  state: [5, 10, 0, 0]
+  vel_max: [2, 1]
+  vel_min: [-2, -1]
+"""
+    (workspace / "car.yaml").write_text(text)
+    env = irsim.make(workspace / "car.yaml", headless=True, display=False, log_level="ERROR")
+    recorder = Recorder(env.simulation, horizon=30, scenario=None, options={})
+    for turn in [0.3] * 10 if mode == "steer" else [0.3] * 10 + [0.0] * 10:
+        env.step(np.array([[1.0], [turn]]))
+        recorder.write_if_due()
+    recorder.close()
+    steered = float(env.robot.state[3, 0])
+    env.end()
+    assert steered == pytest.approx(0.3)
+    assert first_row(recorder.folder, view="speeds")["max_steering"] == pytest.approx(0.3, abs=0.002)
+
+
 def test_speeds(pair: Run) -> None:
     trace = pair.trace()
     cells = first_row(pair, view="speeds", robot="left")
@@ -172,6 +197,7 @@ def test_speeds(pair: Run) -> None:
     assert cells["max_speed"] == pytest.approx(1.0, abs=1e-3)
     assert cells["min_forward_speed"] is None  # an omnidirectional drive has no forwards
     assert cells["mean_speed"] == pytest.approx(way / trace.time[-1], abs=1e-3)
+    assert cells["max_steering"] is None
     assert first_row(pair, view="speeds", robot="walker")["path_length"] == 0.0
 
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Tracks",
+    "goal_shape",
     "name_label",
     "shape_mark",
     "text_label",
@@ -26,10 +27,13 @@ __all__ = [
     "trajectory_line",
     "trajectory_points",
     "trajectory_stroke",
+    "view_mark",
     "view_sector",
 ]
 
 
+_MIN_GOAL_SHARE = 0.2
+"""Least diameter of the disc at a goal without heading, as a share of the longer side of the body."""
 MAX_SECTOR_ANGLE = 2 * math.pi - 0.01
 """Angle [rad] of the field of view from which on it is drawn as a circle."""
 
@@ -70,7 +74,21 @@ def view_sector(number: int, angle: float, radius: float, style: ObjectStyle, po
     shape: Geometry = Circle(x, y, radius)
     if angle < MAX_SECTOR_ANGLE:
         shape = Sector(x, y, radius, theta - angle / 2, theta + angle / 2)
+    return view_mark(number, shape, style)
+
+
+def view_mark(number: int, shape: Geometry, style: ObjectStyle) -> Mark:
+    """A field of view of any outline."""
     return Mark(number, "fov", shape, style.fov_color, Stroke(style.fov_edge_color), style.fov_alpha, style.fov_zorder)
+
+
+def goal_shape(body: Body, goal: Pose) -> Geometry:
+    """The body at its goal; a disc about the goal for a body that may arrive with any heading (NaN)."""
+    x, y, heading = goal
+    centred = body.kind == "circle" and body.middle == (0.0, 0.0)
+    if centred or not math.isnan(heading):
+        return place(body.geometry, (x, y, 0.0 if math.isnan(heading) else heading))
+    return Circle(x, y, max(min(body.length, body.width), _MIN_GOAL_SHARE * max(body.length, body.width)) / 2)
 
 
 def trajectory_line(number: int, body: Body, style: ObjectStyle, states: Floats) -> Mark:

@@ -26,13 +26,16 @@ from irsim.graphics.scene.tracks import Track
 from irsim.graphics.scene.zones import DrawnZones, draw_zones
 from irsim.objects.drawing.object_marks import (
     Tracks,
+    goal_shape,
     name_label,
     shape_mark,
     text_label,
     trail_mark,
     trajectory_line,
+    view_mark,
     view_sector,
 )
+from irsim.objects.drawing.visible_sector import visible_sector
 from irsim.objects.sensors.contact import Contact2D
 from irsim.objects.sensors.drawing import draw_forces, draw_scan
 from irsim.objects.sensors.lidar import Lidar2D
@@ -244,6 +247,9 @@ class SceneBuilder:
         if drawn is None or drawn.key != key:
             drawn = _draw(view, body, style, pose, heading, goal, key, self._has_picture, drawn)
             self._drawn[view.id] = drawn
+        if style.show_fov and view.fov is not None and view.fov_radius is not None and view.fov_occlusion:
+            seen = visible_sector(view, view.fov, view.fov_radius, pose)  # anew in each picture: others move
+            scene.marks.append(view_mark(view.id, seen, style))
         scene.marks += drawn.marks
         scene.labels += drawn.labels
         if drawn.picture is not None:
@@ -348,17 +354,16 @@ def _draw(
     """
     drawn = _Drawn(key, [], [], None, (style, body, str(goal)))
     marks, number = drawn.marks, view.id
-    if style.show_fov and view.fov is not None and view.fov_radius is not None:
+    if style.show_fov and view.fov is not None and view.fov_radius is not None and not view.fov_occlusion:
         marks.append(view_sector(number, view.fov, view.fov_radius, style, pose))
     has_goal = not math.isnan(goal[0])
     if style.show_goal and has_goal:
         if earlier is not None and earlier.goal_key == drawn.goal_key:
             drawn.goal = earlier.goal
         if drawn.goal is None:
-            goal_pose = (goal[0], goal[1], 0.0 if math.isnan(goal[2]) else goal[2])
-            stroke, place_of = Stroke(style.goal_color), place(body.geometry, goal_pose)
+            stroke, shape = Stroke(style.goal_color), goal_shape(body, (goal[0], goal[1], goal[2]))
             drawn.goal = shape_mark(
-                number, "goal", place_of, style.goal_color, stroke, style.goal_alpha, style.goal_zorder
+                number, "goal", shape, style.goal_color, stroke, style.goal_alpha, style.goal_zorder
             )
         marks.append(drawn.goal)
     if view.description is not None and body.kind != "compound" and has_picture(view.description):
