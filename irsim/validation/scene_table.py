@@ -246,7 +246,7 @@ def lidar_hits(scenario: ResolvedScenario, seed: int) -> list[LidarHits]:
     built = build_world(replace(scenario, objects=records, world=world), 1)
     state = core.State(built, np.array([seed], dtype=np.uint64), False)
     state.look()
-    rows = []
+    rows = list[LidarHits]()
     for row, first, count in built.scans():
         hits = Counter(state.hits[first : first + count].tolist())
         missed = hits.pop(-1, 0)
