@@ -32,6 +32,7 @@ from irsim.simulation.outcome import explored_share, robot_outcomes
 from irsim.simulation.random_streams import fresh_seed
 
 if TYPE_CHECKING:
+    from irsim.graphics.scene.scene import Scene
     from irsim.objects.view import ObjectView
     from irsim.policies.policy import Policy
 
@@ -123,11 +124,14 @@ def snapshot_of(
     tries: Iterable[int] | None = None,
     policy: Policy | None = None,
     driven: str | None = None,
+    base: ResolvedScenario | None = None,
+    changed: Collection[str] = (),
 ) -> SnapshotResult:
     """Like :func:`snapshot`, for a scenario already read, with its warnings; ``path`` is only used in the result.
 
     A ``policy`` in Python drives the robots; ``driven`` is the text of what does, for the result. Without a seed the
-    first of ``tries`` that leaves room for every object counts; by default they are drawn.
+    first of ``tries`` that leaves room for every object counts; by default they are drawn. Objects named in
+    ``changed`` are outlined, and dashed where they are at the start of ``base`` with the same seed.
     """
     if region is not None:
         from irsim.graphics.scene.scene import region_extent
@@ -158,6 +162,7 @@ def snapshot_of(
     options = [*region_options(region), *strip_options(strip), *overlay_options(shown)]
     extra = ["--size", str(size), *options, *([] if driven is None else ["--policy", driven]), "-o", str(out)]
     repeated = seed_to_repeat(scenario, env.seed, random_parts(scenario))
+    other = None if base is None else Env(base, seed=env.seed, headless=True, log_level="ERROR")
     result = snapshot_of_env(
         env,
         path,
@@ -169,8 +174,12 @@ def snapshot_of(
         warnings=warnings,
         reproduce=reproduce_command("render", path, repeated, count, strict, imports, extra=extra),
         progress=progress,
+        base=other,
+        changed=changed,
     )
     env.end(ending_time=0.0)
+    if other is not None:
+        other.end(ending_time=0.0)
     return result
 
 
@@ -187,6 +196,8 @@ def snapshot_of_env(
     reproduce: str,
     progress: Progress | None = None,
     move: Callable[[int], None] | None = None,
+    base: Env | None = None,
+    changed: Collection[str] = (),
 ) -> SnapshotResult:
     """Like :func:`snapshot`, for an environment in its present state.
 
@@ -202,6 +213,8 @@ def snapshot_of_env(
         reproduce: Command that draws the same picture, for the result.
         progress: Callback ``(steps_done, steps_total)``.
         move: Moves the environment to a step of a strip; default: it is stepped.
+        base: Environment of a scenario that a single picture is compared with.
+        changed: Names of the objects that differ from it.
     """
     scenario = env.scenario
     png = b""
@@ -213,9 +226,17 @@ def snapshot_of_env(
         advance(env, moments[-1], progress, until_done=False)
     ways = requested_plans(env, overlays)
     if moments is None and draw:
+        from irsim.rendering.compared import mark_changes
         from irsim.rendering.snapshot import render_scene
 
-        extra = additions(env, overlays, ways)
+        more = additions(env, overlays, ways)
+
+        def extra(scene: Scene) -> None:
+            if more is not None:
+                more(scene)
+            if base is not None:
+                mark_changes(scene, env.simulation, base.simulation, changed)
+
         png = render_scene(env.simulation, size_px=size, region=region, overrides=plot_keys(overlays), extra=extra)
     x, y, right, top = scenario.world.bounds
     counts = counts_of(scenario)

@@ -287,7 +287,7 @@ def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
     messages, seeds_of = list[str](), incident_seeds(episodes)
     words = {
         "contacts_between_steps": "robots touched something between steps in",
-        "human_contacts": "contacts between people in",
+        "human_contacts": "contacts between people, or other moving obstacles, in",
         "left": "objects left the world in",
         "jumped": "objects jumped over their goal in",
         "seen": "robots were seen in",

@@ -183,6 +183,6 @@ def show_dry_run(dry_run: DryRun, out: Console) -> None:
         f"'{s.name}' {s.doing} since {seconds(s.since)} at ({s.x:.2f}, {s.y:.2f}): {s.why}" for s in dry_run.stuck[1:]
     ]
     lines += [f"'{gone.name}' left the world at {seconds(gone.time)}" for gone in dry_run.left[1:]]
-    out.print(Text.assemble(("dry run", "bold"), f"{seed}: {clean(dry_run.summary, 600)}"), soft_wrap=True)
+    out.print(Text.assemble(("tried", "bold"), f"{seed}: {clean(dry_run.summary, 600)}"), soft_wrap=True)
     for line in lines:
         out.print(f"  {clean(line, 200)}", soft_wrap=True)

@@ -37,9 +37,10 @@ from irsim.episodes.watching import sights_message, zones_message
 from irsim.results.episode import Left, RobotResult, ZoneResult
 from irsim.results.run import HorizonSource
 from irsim.simulation.events import Event
+from irsim.simulation.roles import name_of_humans
 
 if TYPE_CHECKING:
-    from irsim.scenario.resolve.resolved import ResolvedScenario
+    from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
 __all__ = ["others_arrived_message", "reason_message", "summary_message"]
 
@@ -99,8 +100,8 @@ def summary_message(
         shunting_message(simulation, robots, facts.parked),
         None if pushes else closeness_message(robots),
         others_arrived_message(scenario, facts.events),
-        "no contacts between people" if not contacts and _people_may_overlap(facts) else None,
-        contacts_message(contacts, brief=said),
+        f"no contacts between {name_of_humans(facts.humans)}" if not contacts and _people_may_overlap(facts) else None,
+        contacts_message(contacts, name_of_humans(_humans_in(facts, contacts)), brief=said),
         others_between_steps_message(facts.between),
         jam_message(simulation, facts.jammed),
         _others_standing_message(facts),
@@ -111,6 +112,12 @@ def summary_message(
         sights_message(facts.events),
     ]
     return ("" if driven is None else f"with {driven} for all robots: ") + "; ".join(filter(None, parts))
+
+
+def _humans_in(facts: EpisodeFacts, contacts: Sequence[Event]) -> list[ObjectRecord]:
+    """The humans that take part in contacts."""
+    names = {name for event in contacts for name in (event.object, event.partner)}
+    return [record for record in facts.humans if record.name in names]
 
 
 def _people_may_overlap(facts: EpisodeFacts) -> bool:

@@ -87,18 +87,19 @@ def find_incidents(humans: Collection[str], events: Sequence[Event]) -> Incident
     return incidents
 
 
-def contacts_message(contacts: Sequence[Event], *, brief: bool) -> str | None:
-    """How often people touched each other, and which two did first; None if they never did.
+def contacts_message(contacts: Sequence[Event], who: str, *, brief: bool) -> str | None:
+    """How often humans touched each other, and which two did first; None if they never did.
 
     Args:
         contacts: From :func:`find_human_contacts`.
+        who: What they are called (:func:`irsim.simulation.roles.name_of_humans`).
         brief: Leave out the first one, which another message has.
     """
     if not contacts:
         return None
     first = contacts[0]
     hit = f"{'first ' * (len(contacts) > 1)}{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
-    return f"{plural(len(contacts), 'contact')} between people" + ("" if brief else f" ({hit})")
+    return f"{plural(len(contacts), 'contact')} between {who}" + ("" if brief else f" ({hit})")
 
 
 def jumps_message(jumps: dict[str, Event], nearest: Mapping[str, float]) -> str | None:

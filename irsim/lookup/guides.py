@@ -300,9 +300,9 @@ GUIDES: dict[str, Guide] = {
         "judged at the ends of steps: two objects that touch within a step and are apart at both ends have an event "
         "contact_between_steps, or passed_through. The summary, and after a failure the reason, begins with the first "
         "of a robot; world.contacts: swept makes them collisions. The summary also counts contacts between people, "
-        "objects that left the world, or jumped over their goal: passed it within goal_threshold between "
-        "two steps (event overshoot) and never arrived. In a benchmark, a seed without room for an object is "
-        "placement-crowded and counts in no rate. "
+        "or between other moving obstacles, objects that left the world, or jumped over their goal: passed it within "
+        "goal_threshold between two steps (event overshoot) and never arrived. In a benchmark, a seed "
+        "without room for an object is placement-crowded and counts in no rate. "
         "Object names are numbered through, robots first: obstacle_3 in a file with one robot is the third obstacle; "
         "pictures shorten it to o3.",
         None,

@@ -137,6 +137,9 @@ class ScenarioDiff(Result):
     """Changes of the files; entries are matched by name or similarity when others are added or removed before them."""
     world: list[WorldChange] | None
     """Changes of the worlds, which are built with the same seed; None if one of the scenarios is invalid."""
+    motion: list[str] | None = None
+    """What differs in motion when both are tried with the same seed, collisions first; empty if everything moves alike,
+    None if that was not compared."""
     comments_lost: list[str]
     """Comments that were removed; edited ones are in ``comments_changed``."""
     comments_changed: list[CommentChange]

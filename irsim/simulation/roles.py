@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,7 @@ __all__ = [
     "STATIC",
     "humans_of",
     "kinds_of",
+    "name_of_humans",
     "social_groups",
     "travelling_humans",
 ]
@@ -27,6 +29,14 @@ KINDS = ("robot", "human", "static")
 """Kinds of objects, in the order of the numbers below."""
 ROBOT, HUMAN, STATIC, IGNORED = range(4)
 _HUMAN_TAG = "pedestrian"
+_PERSON_WORDS = frozenset(
+    {
+        *("pedestrian", "person", "people", "human", "walker", "visitor", "child", "children", "kid", "adult", "man"),
+        *("woman", "guest", "customer", "passenger", "commuter", "worker", "nurse", "patient", "student", "jogger"),
+        *("runner", "crowd", "fußgänger", "passant", "peaton", "peatón", "persona", "行人"),
+    }
+)
+"""Words for people in names and tags, without the s of plurals."""
 
 
 def kinds_of(records: Sequence[ObjectRecord]) -> NDArray[np.uint8]:
@@ -53,6 +63,16 @@ def social_groups(records: Sequence[ObjectRecord]) -> list[tuple[int, ...]]:
 def humans_of(records: Sequence[ObjectRecord]) -> list[ObjectRecord]:
     """Records of the humans (:func:`kinds_of`)."""
     return [record for record, kind in zip(records, kinds_of(records), strict=True) if kind == HUMAN]
+
+
+def name_of_humans(records: Iterable[ObjectRecord]) -> str:
+    """What texts call humans: ``people`` if each is tagged or named so (``walker_2``), else ``moving obstacles``."""
+    return "people" if all(_is_named_person(record) for record in records) else "moving obstacles"
+
+
+def _is_named_person(record: ObjectRecord) -> bool:
+    words = [word for text in (record.name, *record.tags) for word in re.split(r"[\W\d_]+", text.lower())]
+    return any(word.removesuffix("s") in _PERSON_WORDS for word in words)
 
 
 def travelling_humans(records: Sequence[ObjectRecord]) -> frozenset[str]:

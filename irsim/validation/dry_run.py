@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ from irsim.simulation.simulation import Simulation
 from irsim.simulation.step_cost import step_work
 from irsim.simulation.trace import Trace, join_traces, next_rows, present_row
 
-__all__ = ["SECONDS", "dry_run"]
+__all__ = ["SECONDS", "Trial", "dry_run", "try_out"]
 
 BUDGET = 300_000
 """Work of a dry run: steps times objects, weighted by cost (:mod:`irsim.simulation.step_cost`); about a second.
@@ -46,7 +46,24 @@ _MAX_LISTED = 10
 Flags = NDArray[np.bool_]
 
 
-def dry_run(
+class Trial(NamedTuple):
+    """A dry run and its steps."""
+
+    result: DryRun
+    trace: Trace
+
+
+def dry_run(scenario: ResolvedScenario, **options: Any) -> DryRun:
+    """Simulate the first steps of a scenario and summarise what happens.
+
+    Args:
+        scenario: The scenario.
+        **options: As of :func:`try_out`.
+    """
+    return try_out(scenario, **options).result
+
+
+def try_out(
     scenario: ResolvedScenario,
     *,
     seed: int | None = None,
@@ -54,8 +71,8 @@ def dry_run(
     seconds: float = SECONDS,
     steps: int | None = None,
     limits: Limits | None = None,
-) -> DryRun:
-    """Simulate the first steps of a scenario and summarise what happens.
+) -> Trial:
+    """Simulate the first steps of a scenario, summarise what happens, and keep the steps.
 
     Args:
         scenario: The scenario.
@@ -85,7 +102,7 @@ def dry_run(
         )
         if skipped := crowded_message(crowded):
             answer.summary += f"; {skipped}"
-        return answer
+        return Trial(answer, trace)
     finally:
         env.end(ending_time=0.0)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from irsim.common.text import plural
@@ -18,7 +19,8 @@ from irsim.scenario.open import document_of
 from irsim.scenario.read import Reading, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.validation.diff.compare import compare
-from irsim.validation.dry_run import dry_run
+from irsim.validation.diff.motion import motion_changes
+from irsim.validation.dry_run import try_out
 from irsim.validation.feasibility.check import feasibility_findings
 
 __all__ = ["diff", "fix", "report", "report_of", "validate", "warn_of_collisions"]
@@ -54,12 +56,13 @@ def validate(
     most = limits or DEFAULT_LIMITS
     reading = read(document_of(path, text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
     report = report_of(reading, str(path) if path is not None else "(text)")
+    other: Reading | None = None
     if base is not None or base_text is not None:
         other = read(document_of(base, base_text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
         report.changes = compare(other, reading, seed=seed)
         _mark_old(report.findings, other)
     if simulate and reading.scenario is not None:
-        report.dry_run = _dry_run_or_findings(report, reading, seed, limits)
+        _try_out(report, reading, other, seed, limits)
         if report.dry_run is not None:
             hit = {name for event in report.dry_run.collisions for name in (event.object, event.partner)}
             if more := warn_of_collisions(report.findings, reading.scenario, {str(name) for name in hit}):
@@ -192,17 +195,29 @@ def warn_of_collisions(findings: Sequence[Finding], scenario: ResolvedScenario, 
     return count
 
 
-def _dry_run_or_findings(
-    report: ValidationReport, reading: Reading, seed: int | None, limits: Limits | None
-) -> DryRun | None:
-    """The dry run; None if a random object has no free place with the seed, which is added to the findings."""
+def _try_out(
+    report: ValidationReport, reading: Reading, base: Reading | None, seed: int | None, limits: Limits | None
+) -> None:
+    """Add the dry run and how its motion differs from the base's with the same seed.
+
+    If a random object has no free place with the seed, that is added to the findings instead.
+    """
     assert reading.scenario is not None
     try:
-        return dry_run(reading.scenario, seed=seed, limits=limits)
+        trial = try_out(reading.scenario, seed=seed, limits=limits)
     except PlacementError as error:
         crowded = [Finding.of(item) for item in error.diagnostics]
         report.findings = [*crowded, *report.findings]
         report.errors += len(crowded)
         report.valid = False
         report.summary = _counted(report.errors, report.warnings)
-        return None
+        return
+    report.dry_run = trial.result
+    if base is None or base.scenario is None or report.changes is None:
+        return
+    if report.changes.same:
+        report.changes.motion = []
+        return
+    with suppress(PlacementError):  # the base has no room with this seed
+        before = try_out(base.scenario, seed=trial.result.seed, limits=limits)
+        report.changes.motion = motion_changes(before, trial)

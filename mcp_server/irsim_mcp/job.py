@@ -150,15 +150,20 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
     arguments, limits = job["arguments"], _limits(job)
     path, text = arguments.pop("path", None), arguments.pop("text", None)
     checked = ""
+    base = {key: arguments.pop(key) for key in ("base", "base_text") if key in arguments}
     if arguments.pop("check"):
         from irsim.api import validate
 
-        report = validate(path, text=text, strict=True, simulate=True, seed=arguments["seed"], limits=limits)
+        report = validate(path, text=text, strict=True, simulate=True, seed=arguments["seed"], limits=limits, **base)
         checked = f', "report": {report.model_dump_json()}'
         if not report.valid:
             return f'{{"png": "", "scene": null{checked}}}'
         if arguments["seed"] is None and report.dry_run is not None:
             arguments["seed"] = report.dry_run.seed  # the picture and the check are of the same layout
+        if report.changes is not None and report.changes.world:
+            other, _ = read_scenario(base.get("base"), text=base.get("base_text"), strict=True, limits=limits)
+            changed = dict.fromkeys(item.object for item in report.changes.world if item.object is not None)
+            arguments |= {"base": other, "changed": list(changed)}
     scenario, told = read_scenario(path, text=text, strict=True, limits=limits)
     if arguments["draw"]:
         _load_elsewhere("irsim.rendering.snapshot")

@@ -19,7 +19,7 @@ robot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [3, 1], shape: {name: 
         behavior: {name: dash}}
 obstacle:
   - {name: ann, kinematics: {name: omni}, state: [2, 5, 0], goal: [9, 5], shape: {name: circle, radius: 0.3},
-     behavior: {name: dash}}
+     behavior: {name: dash}, tags: [pedestrian]}
   - {name: bob, kinematics: {name: omni}, state: [8, 5, 0], goal: [1, 5], shape: {name: circle, radius: 0.3},
      behavior: {name: dash}, tags: [pedestrian]}
 """
@@ -92,7 +92,7 @@ def test_incidents_of_a_benchmark_are_counted_and_come_first(tmp_path: Path) -> 
     assert counted == [(1, [], False)] * 3 + [(0, ["stray"], True)] * 3
     assert [row.incidents for row in result.rows[:2]] == [{"human_contacts": 3}, {"left": 3, "jumped": 3}]
     assert result.incidents == [
-        "contacts between people in 3 of 6 episodes (3 contacts; seeds 0, 1, 2)",
+        "contacts between people, or other moving obstacles, in 3 of 6 episodes (3 contacts; seeds 0, 1, 2)",
         "objects left the world in 3 of 6 episodes (seeds 0, 1, 2)",
         "objects jumped over their goal in 3 of 6 episodes (seeds 0, 1, 2)",
     ]

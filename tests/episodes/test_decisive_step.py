@@ -171,7 +171,9 @@ def test_the_error_of_a_heading_that_counts_and_the_walls_are_told(tmp_path: Pat
 
 
 def test_people_who_may_overlap_but_do_not_are_told(tmp_path: Path) -> None:
-    assert "no contacts between people" in result_of(PEOPLE, tmp_path).summary
+    assert "no contacts between moving obstacles" in result_of(PEOPLE, tmp_path).summary  # no word says people
+    tagged = PEOPLE.replace("name: ann", "name: ann, tags: [pedestrian]").replace("name: bob", "name: walker_2")
+    assert "no contacts between people" in result_of(tagged, tmp_path).summary
     stopped = PEOPLE.replace("collision_mode: unobstructed_obstacles, ", "")
     assert "contacts between people" not in result_of(stopped, tmp_path).summary
 

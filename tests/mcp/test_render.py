@@ -286,3 +286,46 @@ async def test_a_robot_that_comes_later_has_no_plan_before(client: Caller) -> No
     told = [(await looked(client, late, step=step))["first"] for step in (0, 2, 10)]
     assert ["its own plan for 'dasher'" in line for line in told] == [False, False, True]
     assert all("its own plan for 'rover'" in line for line in told)
+
+
+SCENE = """\
+world: {width: 12, height: 8}
+robot:
+  - {name: rover, kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 4, 0], goal: [11, 4],
+     behavior: {name: dash}}
+obstacle:
+  - {name: crate, shape: {name: rectangle, length: 1, width: 1}, state: [6, 6.5, 0.4]}
+  - {name: post, shape: {name: circle, radius: 0.4}, state: [3, 1, 0]}
+"""
+
+
+def magenta(data: str, x: float, y: float, reach_px: int = 4) -> bool:
+    """Whether a picture of 12 m x 8 m has magenta near a place."""
+    with Image.open(io.BytesIO(base64.b64decode(data))) as image:
+        pixels = image.convert("RGB")
+        near = [
+            pixels.getpixel((column, row))
+            for column in range(pixels.width)
+            for row in range(pixels.height)
+            if abs(column - (54 + x / 12 * 522)) <= reach_px and abs(row - (380 - y / 8 * 348)) <= reach_px
+        ]
+    return any(r > 150 and g < 100 and b > 150 for r, g, b in near)
+
+
+async def test_a_picture_marks_what_differs_from_base(client: Caller) -> None:
+    after = SCENE.replace("[6, 6.5, 0.4]", "[6, 4.2, 0]").replace(
+        "  - {name: post, shape: {name: circle, radius: 0.4}, state: [3, 1, 0]}\n", ""
+    )
+    result = await client.call("render_snapshot", scenario_yaml=after, base=SCENE)
+    text, data = text_of(result), image_of(result).data
+    assert "Marked in magenta: what differs from base; dashed: where it was." in text
+    assert "- changed obstacle[0].state: [6, 6.5, 0.4] -> [6, 4.2, 0]" in text
+    assert "in motion, new: 'rover' hits 'crate'" in text
+    assert magenta(data, 5.5, 4.2)  # the crate's side
+    assert magenta(data, 6, 7.15, 12)  # where the crate was
+    assert magenta(data, 3, 1.4, 12)  # the post that is gone
+    assert not magenta(data, 1, 4, 12)
+    same = await client.call("render_snapshot", scenario_yaml=SCENE, base=SCENE)
+    assert "there is nothing to look at or to run" in text_of(same)
+    late = await client.call("render_snapshot", scenario_yaml=after, base=SCENE, step=3)
+    assert "base is compared at step 0 of a scenario only" in error_of(late)

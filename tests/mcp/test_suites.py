@@ -171,5 +171,8 @@ async def test_contacts_between_people_are_in_the_first_line(client: Caller, wor
     many = await client.call("benchmark", scenarios=[text], seeds=3, perturb="speed=1%")
     assert "1 contact between people ('ann' hit 'bob' at" in text_of(run).splitlines()[0]
     assert data_of(run)["incidents"] == {"human_contacts": 1}
-    assert "contacts between people in 3 of 3 episodes (3 contacts; seeds 0, 1, 2)" in text_of(many).splitlines()[0]
+    assert (
+        "contacts between people, or other moving obstacles, in 3 of 3 episodes (3 contacts; seeds 0, 1, 2)"
+        in text_of(many).splitlines()[0]
+    )
     assert data_of(many)["rows"][0]["incidents"] == {"human_contacts": 3}

@@ -152,6 +152,60 @@ async def test_what_was_there_before_an_edit_is_marked(client: Caller, workspace
     assert "also in base" not in issues["robot[0].state"]
 
 
+SCENE = """\
+world: {width: 12, height: 8}
+robot:
+  - name: rover
+    kinematics: {name: diff}
+    shape: {name: circle, radius: 0.3}
+    state: [1, 4, 0]
+    goal: [11, 4]       # the far wall
+    behavior: {name: dash}
+obstacle:
+  - {name: crate, shape: {name: rectangle, length: 1, width: 1}, state: [6, 6.5, 0.4]}
+  - {name: post, shape: {name: circle, radius: 0.4}, state: [3, 1, 0]}
+"""
+
+
+async def test_an_edit_says_what_differs_in_motion_and_its_collision_first(client: Caller) -> None:
+    after = SCENE.replace("[6, 6.5, 0.4]", "[6, 4.2, 0.4]")
+    result = await client.call("validate_scenario", scenario_yaml=after, base=SCENE)
+    lines = data_of(result)["changes"]
+    assert lines[1].startswith("in motion, new: 'rover' hits 'crate' at 4.3 s near (5.5")
+    assert lines[2].startswith("in motion, 'rover' does not arrive within the time tried, in base at 10 s")
+    assert "The edit causes a collision ('rover' hits 'crate'" in data_of(result)["next"]
+    assert "report it first and offer a fix; apply it only if the user has not forbidden other changes" in text_of(
+        result
+    )
+    again = (await client.data("validate_scenario", scenario_yaml=after + "# more\n", base=after))["changes"]
+    assert "the world is the same, and so is its motion" in again
+    old = await client.data("validate_scenario", scenario_yaml=after.replace("name: post", "name: pole"), base=after)
+    assert any(line.startswith("in motion, as in base: 'rover' hits 'crate'") for line in old["changes"])
+    assert "causes a collision" not in old["next"]
+
+
+async def test_an_edit_that_moves_nothing_otherwise_says_so(client: Caller) -> None:
+    seen = SCENE.replace("    behavior: {name: dash}\n", "    behavior: {name: dash}\n    sensors: [{name: lidar2d}]\n")
+    data = await client.data("validate_scenario", scenario_yaml=seen, base=SCENE)
+    assert "in motion: no difference" in data["changes"]
+    slow = SCENE.replace("behavior: {name: dash}", "behavior: {name: dash}\n    vel_max: [0.5, 1]")
+    lines = (await client.data("validate_scenario", scenario_yaml=slow, base=SCENE))["changes"]
+    assert any(line.startswith("in motion, 'rover' arrives at ") and "in base at 10 s" in line for line in lines)
+    assert any(line.startswith("in motion, other paths: 'rover' from 0.1 s on, up to ") for line in lines)
+
+
+async def test_after_an_edit_of_comments_nothing_is_asked_again(client: Caller) -> None:
+    """Warnings and hints that the base has, too, are not repeated."""
+    dashing = SCENE.replace("[6, 6.5, 0.4]", "[6, 4.2, 0.4]")
+    after = dashing.replace("# the far wall", "# at the far wall")
+    for tool in ("validate_scenario", "render_snapshot"):
+        text = text_of(await client.call(tool, scenario_yaml=after, base=dashing))
+        assert "Nothing but comments and layout differs from base, so there is nothing to look at or to run" in text
+        assert "comment changed: # the far wall -> # at the far wall" in text
+        for asked in ("Fix:", "Tried:", "run_episode", "hint ", "1. "):
+            assert asked not in text.replace("validate_scenario", "")
+
+
 async def test_few_hints_need_no_second_call(client: Caller) -> None:
     hinted = ROOM.replace("behavior: {name: dash}", "vel_max: [2, 1]")
     data = await client.data("validate_scenario", scenario_yaml=hinted)

@@ -127,7 +127,7 @@ def _crowd_that_stops(context: Context) -> Iterator[Finding]:
     yield hint(
         "crowd-stops",
         ("world", "collision_mode") if given else people[0].path,
-        f"'{people[0].name}' and {len(people) - 1} more walk by 'sfm', whose people touch now and then, and "
+        f"'{people[0].name}' and {len(people) - 1} more move by 'sfm', under which bodies touch now and then, and "
         "collision_mode: stop stops both for good: more and more of them stand still",
         given="stop" if given else None,
         fix=f"world.collision_mode: {mode}"

@@ -19,7 +19,7 @@ from irsim_mcp.limits import MAX_SEED, MAX_STEPS
 from irsim_mcp.resources import uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, reporter, strict
-from irsim_mcp.tools.validate_scenario import report_of, text_of
+from irsim_mcp.tools.validate_scenario import new_collisions, report_of, text_of
 
 __all__ = ["PLACE", "tool"]
 
@@ -27,10 +27,10 @@ PLACE = 3
 
 _DESCRIPTION = """
     Check a scenario and draw it at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading;
-    omni: where it moves), goals (pale), names, lidar beams, paths. Use it after every edit and after a failed run.
+    omni: where it moves), goals (pale), names, lidar beams, paths.
     At step 0 the text has what validate_scenario finds, and a table of all objects: drive, footprint, pose, goal,
     limits, ranges over seeds, narrowest passages (r0 is 'robot_0', G-r0 its goal). An invalid scenario gives only
-    its errors. Writes no file. Next: edit and look again, or run_episode.
+    errors. Next: edit and look again, or run_episode.
 """
 _OVERLAYS = (
     "Default: names, goals, paths, zones. clearance: shaded where a robot's middle can't be; plan: paths to goals."
@@ -69,6 +69,7 @@ def tool(services: Services) -> StrictTool:
             list[float] | None,
             Field(min_length=4, max_length=4, description="Zoom in: [x_min, y_min, x_max, y_max] in m."),
         ] = None,
+        base: Annotated[str | None, Field(description="Scenario before an edit, to mark changes at step 0.")] = None,
         return_image: Annotated[bool, Field(description="false: text only.")] = True,
     ) -> list[TextContent | ImageContent]:
         what: dict[str, Any] = {
@@ -80,7 +81,11 @@ def tool(services: Services) -> StrictTool:
             "overlays": overlays,
             "region": region,
             "draw": return_image,
+            **services.base(base),
         }
+        if base is not None and (step != 0 or strip is not None or run_id is not None):
+            fix = "leave out step, strip and run_id; validate_scenario with base compares the motion"
+            raise failure("bad-argument", "base is compared at step 0 of a scenario only", where="base", fix=fix)
         if run_id is None:
             what["check"] = step == 0 and strip is None
             answer = await services.scenario_job("snapshot", scenario_path, scenario_yaml, seed=seed, **what)
@@ -119,20 +124,29 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
         return text_of(report)
     labels = {robot["name"]: robot["label"] for robot in answer["scene"]["robots"]}
     table = scene_lines(answer["table"], labels, answer["scene"]["seed"])
+    same = report.changes is not None and answer["report"]["changes"]["same"]
     first = "If the picture is right" if not report.issues else "Fix what is not meant, then"
-    report.next = f"{first}{',' if not report.issues else ''} run_episode {given} seeds=3."
-    if any(item["code"] == "no-behavior" for item in answer["report"]["findings"]):
+    hits = new_collisions(answer["report"]["changes"])
+    if hits:
+        report.next = report.next.replace("Look at it with render_snapshot, then", "Then") + f" {given} seeds=3."
+    elif not same:
+        report.next = f"{first}{',' if not report.issues else ''} run_episode {given} seeds=3."
+    if not same and not hits and any(item["code"] == "no-behavior" for item in answer["report"]["findings"]):
         name = str(given).removeprefix("scenario_path=")
         report.next = (
             f"{report.next.removesuffix(' seeds=3.')} policy=dash, compare policies with benchmark "
             f"scenarios=[{name!r}] policies=[...], or drive it by a program."
         )
-    if ran:
+    if ran and not same and not hits:
         report.next = "It has been run as it is: change it, or report what the run has shown."
-    if not answer["scene"]["robots"]:
+    if not answer["scene"]["robots"] and not same:
         report.next = f"{first}{',' if not report.issues else ''} it is done: without robots there is nothing to run."
     head, *findings, advice = text_of(report).splitlines()
     line = _line(answer["scene"], run_id, brief=True, passages=answer["table"]["passages"])
+    if same:
+        return "\n".join([line, head, *findings, advice])
+    if any(answer["scene"]["size"]) and report.changes is not None:
+        findings.append("Marked in magenta: what differs from base; dashed: where it was.")
     return "\n".join([line, head, *findings, *table, advice])
 
 

@@ -15,17 +15,16 @@ from irsim_mcp.answers import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
 
-__all__ = ["PLACE", "Report", "report_of", "text_of", "tool"]
+__all__ = ["PLACE", "Report", "new_collisions", "report_of", "text_of", "tool"]
 
 PLACE = 2
 
 _DESCRIPTION = """
-    Check a scenario and try it, without a picture (render_snapshot checks, too). Returns all problems at once; an
-    invalid scenario is a normal result with valid=false. Each issue has a code, path, line, cause and fix. Errors must
-    be fixed; with warnings it may misbehave; hints are worth knowing. not-yet-simulated: this version
-    cannot do it, tell the user. dry_run lists robots that arrived, collided, got stuck or left the world in the first
-    steps. With base (the scenario before an edit) changes lists what differs, by key and in the world. Next: fix,
-    then render_snapshot.
+    Check a scenario and try it, without a picture (render_snapshot checks, too). Returns all problems at once (an
+    invalid scenario is a normal result, valid=false), each with code, path, line, cause and fix. Errors must be fixed;
+    with warnings it may misbehave. not-yet-simulated: tell the user that this version cannot do it. Tried: robots that
+    arrived, collided, got stuck or left the world in the first steps. With base (the scenario before an edit) changes
+    lists what differs, by key, in the world and in motion (same seed). Next: fix, then render_snapshot.
 """
 
 
@@ -120,10 +119,10 @@ def _next_of_valid(data: dict[str, Any], looked: bool) -> str:
     then = ", then ".join(steps) or "nothing is left to do: there are no robots to run"
     tail = "" if runs or not steps else " (there are no robots to run)"
     if data["warnings"]:
-        tried = " and what dry_run reports" if _dry_run_has_problems(data) else ""
+        tried = " and what was tried" if _dry_run_has_problems(data) else ""
         return f"Check whether the warnings{tried} are intended{tail}, {then}"
     if _dry_run_has_problems(data):
-        return f"It is valid, but check whether all that dry_run reports is intended{tail}; {then}"
+        return f"It is valid, but check whether all that happened when it was tried is intended{tail}; {then}"
     if tail:
         return f"There are no robots to run; {then}"
     return then if looked and runs else f"{then[:1].upper()}{then[1:]}"
@@ -141,12 +140,15 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
     """
     few = data["valid"] and data["hints"] <= _MAX_SHOWN_HINTS
     findings = [item for item in data["findings"] if detailed or few or item["severity"] != "hint"]
+    same = data["valid"] and data["changes"] is not None and data["changes"]["same"]
+    if same and not detailed:
+        findings = []
     summary = data["summary"] if data["valid"] else f"invalid: {data['summary']}"
     if data["hints"] and not detailed:
         codes = dict.fromkeys(item["code"] for item in data["findings"] if item["severity"] == "hint")
         named = ", ".join(list(codes)[:_MAX_HINT_CODES])
         summary += f"; {plural(data['hints'], 'hint')}"
-        summary += "" if few else f" ({named}) with response_format=detailed"
+        summary += "" if few and not same else f" ({named}) with response_format=detailed"
     issues = _first_issues([_issue(item, detailed) for item in findings[:most]], most_characters)
     cut = len(findings) - len(issues)
     if cut > 0:
@@ -155,6 +157,15 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
         errors = {item["code"] for item in data["findings"] if item["severity"] == "error"}
         fixable = "Apply the fixes and validate again; lookup explains a code or a key."
         advice = _GAPS if errors == {"not-yet-simulated"} else fixable
+    elif same:
+        advice = (
+            "Nothing but comments and layout differs from base, so there is nothing to look at or to run: deliver it."
+        )
+    elif hits := new_collisions(data["changes"]):
+        advice = (
+            f"The edit causes a collision ({hits[0]}): report it first and offer a fix; apply it only if the user has "
+            f"not forbidden other changes. {'Then' if looked else 'Look at it with render_snapshot, then'} run_episode"
+        )
     else:
         advice = _next_of_valid(data, looked)
     return Report(
@@ -165,7 +176,7 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
         counts=data["counts"],
         issues=issues,
         truncated=cut > 0,
-        dry_run=_dry_run_text(data["dry_run"], detailed),
+        dry_run=None if same and not detailed else _dry_run_text(data["dry_run"], detailed),
         changes=_changes(data["changes"], detailed),
         next=advice,
     )
@@ -200,12 +211,28 @@ def _dry_run_text(tried: dict[str, Any] | None, detailed: bool) -> str | None:
     return clean("; ".join([seed + tried["summary"], *(more if detailed else [])]), 1500)
 
 
+def new_collisions(difference: dict[str, Any] | None) -> list[str]:
+    """Collisions in the trial that the base does not have.
+
+    Args:
+        difference: The comparison with the base; None without one.
+    """
+    motion = (difference or {}).get("motion") or []
+    return [line.removeprefix("new: ") for line in motion if line.startswith("new: ") and " hits " in line]
+
+
 def _changes(difference: dict[str, Any] | None, detailed: bool) -> list[str] | None:
     """The summary of the changes, and one line per change."""
     if difference is None:
         return None
     most = _MAX_CHANGES if detailed else _MAX_CHANGES // 4
-    lines = [f"{item['change']} {place(item['change'], item['path'])}: {_values(item)}" for item in difference["keys"]]
+    motion = difference["motion"]
+    lines = [f"in motion, {line}" for line in motion or []]
+    if motion == []:
+        lines.append(
+            "in motion: no difference" if not difference["same"] else "the world is the same, and so is its motion"
+        )
+    lines += [f"{item['change']} {place(item['change'], item['path'])}: {_values(item)}" for item in difference["keys"]]
     facts = [item for item in difference["world"] or [] if not item["direct"]]
     for item in facts:
         before, after = rounded_pair(*names_if_different(item["before"], item["after"]))
