@@ -92,7 +92,7 @@ def contacts_message(contacts: Sequence[Event], who: str, *, brief: bool) -> str
 
     Args:
         contacts: From :func:`find_human_contacts`.
-        who: What they are called (:func:`irsim.simulation.roles.name_of_humans`).
+        who: Their name in texts (:func:`irsim.simulation.roles.name_of_humans`).
         brief: Leave out the first one, which another message has.
     """
     if not contacts:

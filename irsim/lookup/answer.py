@@ -165,7 +165,11 @@ def said_once(topics: Sequence[str], answers: Sequence[Answer | TopicError]) -> 
     told, texts, short = set[str](), set[str](), list[Answer | TopicError]()
     for topic, one in zip(topics, answers, strict=True):
         if isinstance(one, Answer) and one.topic in told:
-            one = Answer(topic=one.topic, kind=one.kind, title=f"{clean(topic)}: see {one.topic} above")
+            one = Answer(
+                topic=one.topic,
+                kind=one.kind,
+                title=f"{clean(topic)}: see {one.topic if one.topic != topic else ''} above".replace("  ", " "),
+            )
         elif isinstance(one, Answer):
             told.add(one.topic)
             one = one.model_copy(update={"text": "" if one.text in texts else one.text})

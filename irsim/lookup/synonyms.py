@@ -126,7 +126,7 @@ EVERYDAY: dict[str, str] = {
     "corridor-passing": "passage, corridor, hallway, aisle, flur, pasillo, 走廊",
     "doorway": "passage, narrow passage, door, gap, tür, puerta, 门",
     "warehouse": "lager, lagerhalle, almacén, 仓库",
-    "car-park": "parkplatz, aparcamiento, estacionamiento, 停车场",
+    "car-park": "parking, parking lot, parking space, parking garage, parkplatz, aparcamiento, estacionamiento, 停车场",
     "crossing": "kreuzung, cruce, intersection, 十字路口, 路口",
 }
 """Topic -> its everyday names, separated by commas; the names of the language itself are not repeated here."""

@@ -61,13 +61,15 @@ UNIT_WORDS = ", ".join(
 _NUMBER = r"-?\d+(?:\.\d+)?"
 _ANY = "|".join(re.escape(name) for name in sorted(_BY_NAME, key=len, reverse=True))
 _QUANTITY = re.compile(rf"({_NUMBER}(?:\s*(?:x|×|by|to|-|and)\s*{_NUMBER})*)\s*[-]?\s*({_ANY})(?![^\W\d])")
+_BETWEEN = re.compile(r"(?:\s|,|x|×|by|and|to)*")
+"""What may stand between quantities."""
 
 
 def unit_answer(topic: str) -> Answer | None:
-    """Return what a unit, or a quantity with a unit, is in the units of scenarios; None if the topic is another.
+    """Convert a unit, or quantities with units, to the units of scenarios; None if the topic is another.
 
     Args:
-        topic: ``mph``, ``12 ft``, ``10 x 20 feet``, ``5 ft 10 in``, ``270°``.
+        topic: ``mph``, ``12 ft``, ``10 x 20 feet``, ``10 ft by 12 ft``, ``5 ft 10 in``, ``270°``.
     """
     asked = " ".join(topic.lower().split())
     if asked in _BY_NAME:
@@ -75,16 +77,18 @@ def unit_answer(topic: str) -> Answer | None:
         said = f"1 {asked} = {unit.factor:.6g} {unit.to}"
     else:
         parts = list(_QUANTITY.finditer(asked))
-        if not parts or _QUANTITY.sub("", asked).strip() or (len(parts) > 1 and not all(map(_is_one, parts))):
+        if not parts or _BETWEEN.fullmatch(_QUANTITY.sub("", asked)) is None:
             return None
         to = _BY_NAME[parts[0][2]].to
         if any(_BY_NAME[part[2]].to != to for part in parts):
             return None
-        if len(parts) > 1:  # 5 ft 10 in is one length
-            said = f"{sum(float(part[1]) * _BY_NAME[part[2]].factor for part in parts):.5g}"
+        if len(parts) > 1 and not _QUANTITY.sub("", asked).strip():  # 5 ft 10 in is one length
+            if not all(map(_is_one, parts)):
+                return None
+            sizes = f"{sum(float(part[1]) * _BY_NAME[part[2]].factor for part in parts):.5g}"
         else:
-            said = _converted(parts[0][1], _BY_NAME[parts[0][2]].factor)
-        said = f"{asked} = {said} {to}"
+            sizes = " x ".join(_converted(part[1], _BY_NAME[part[2]].factor) for part in parts)
+        said = f"{asked} = {sizes} {to}"
     return Answer(
         topic=topic,
         kind="guide",

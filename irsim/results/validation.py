@@ -138,7 +138,7 @@ class ScenarioDiff(Result):
     world: list[WorldChange] | None
     """Changes of the worlds, which are built with the same seed; None if one of the scenarios is invalid."""
     motion: list[str] | None = None
-    """What differs in motion when both are tried with the same seed, collisions first; empty if everything moves alike,
+    """Differences in motion when both are tried with the same seed, collisions first; empty if everything moves alike,
     None if that was not compared."""
     comments_lost: list[str]
     """Comments that were removed; edited ones are in ``comments_changed``."""

@@ -66,7 +66,7 @@ def humans_of(records: Sequence[ObjectRecord]) -> list[ObjectRecord]:
 
 
 def name_of_humans(records: Iterable[ObjectRecord]) -> str:
-    """What texts call humans: ``people`` if each is tagged or named so (``walker_2``), else ``moving obstacles``."""
+    """The name of humans in texts: ``people`` if each is tagged or named so, else ``moving obstacles``."""
     return "people" if all(_is_named_person(record) for record in records) else "moving obstacles"
 
 

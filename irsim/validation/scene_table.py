@@ -130,7 +130,7 @@ def _reference_point(record: ObjectRecord, state: core.State, row: int) -> str:
     if getattr(record.kinematics, "name", None) != "acker" and getattr(record.shape, "wheelbase", None) is None:
         return ""
     low, high = outline(state, row).box()
-    return f" (its pose is that of the rear axle; body {low[0]:+.2f} to {high[0]:+.2f} m)"
+    return f" (its pose means the rear axle; body {low[0]:+.2f} to {high[0]:+.2f} m)"
 
 
 def footprint_of(record: ObjectRecord) -> str:

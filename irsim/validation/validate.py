@@ -12,7 +12,7 @@ from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.diagnostics.errors import PlacementError
 from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.findings import Finding
-from irsim.results.validation import DryRun, Fix, ScenarioDiff, ValidationReport
+from irsim.results.validation import Fix, ScenarioDiff, ValidationReport
 from irsim.scenario.autofix import repair_text
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import document_of

@@ -195,7 +195,7 @@ def test_each_of_several_sensors_has_its_mounting_pose_and_its_hits(tmp_path: Pa
 
 def test_the_row_of_a_car_says_where_its_pose_is_and_how_far_its_body_reaches(tmp_path: Path) -> None:
     table = lines(CAR, tmp_path)
-    assert "rectangle 4.2 x 1.8 (its pose is that of the rear axle; body -0.80 to +3.40 m), follow" in table
+    assert "rectangle 4.2 x 1.8 (its pose means the rear axle; body -0.80 to +3.40 m), follow" in table
     assert "'car' at (2.12, 3.00)" in table
 
 

@@ -64,6 +64,8 @@ def test_examples_of_things_are_valid(thing: str) -> None:
         ("mph", "1 mph = 0.44704 m/s"),
         ("12 ft", "12 ft = 3.6576 m"),
         ("10 x 20 feet", "10 x 20 feet = 3.048 x 6.096 m"),
+        ("12 ft x 20 ft", "12 ft x 20 ft = 3.6576 x 6.096 m"),
+        ("10 feet by 6 in", "10 feet by 6 in = 3.048 x 0.1524 m"),
         ("5 ft 10 in", "5 ft 10 in = 1.778 m"),
         ("20-30 mph", "20-30 mph = 8.9408-13.411 m/s"),
         ("270 degrees", "270 degrees = 4.7124 rad"),
@@ -98,6 +100,7 @@ def test_other_words_are_no_units(asked: str) -> None:
         ("Geschwindigkeit", "robot.vel_max"),
         ("pasillo", "corridor-passing"),
         ("停车场", "car-park"),
+        ("parking lot", "car-park"),
         ("Ziel", "robot.goal"),
     ],
 )

@@ -1,4 +1,4 @@
-"""What differs in motion between two scenarios that were tried with the same seed."""
+"""Differences in motion between two scenarios that were tried with the same seed."""
 
 from __future__ import annotations
 
