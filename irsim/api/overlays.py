@@ -18,6 +18,7 @@ from irsim.results.picture import RobotPlan
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
     from irsim.env import Env
+    from irsim.graphics.scene.scene import Scene
     from irsim.rendering.planned_paths import PlannedPath
     from irsim.rendering.snapshot import Extra
 
@@ -84,7 +85,6 @@ def requested_plans(env: Env, overlays: Collection[Overlay] | None) -> list[Plan
 
 def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[PlannedPath]) -> Extra:
     """A function that draws the overlays that no plot key switches, and contacts within a step, which always show."""
-    from irsim.graphics.scene.scene import Scene
     from irsim.graphics.scene.style import Palette
     from irsim.graphics.scene.zones import draw_zones
     from irsim.rendering.clearance_map import draw_clearance

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from irsim.api.film_strip import draw_strip, moments_of
 from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, plot_keys, requested_plans
@@ -32,7 +32,6 @@ from irsim.simulation.outcome import explored_share, robot_outcomes
 from irsim.simulation.random_streams import fresh_seed
 
 if TYPE_CHECKING:
-    from irsim.graphics.scene.scene import Scene
     from irsim.objects.view import ObjectView
     from irsim.policies.policy import Policy
 
@@ -226,18 +225,12 @@ def snapshot_of_env(
         advance(env, moments[-1], progress, until_done=False)
     ways = requested_plans(env, overlays)
     if moments is None and draw:
-        from irsim.rendering.compared import mark_changes
         from irsim.rendering.snapshot import render_scene
 
-        more = additions(env, overlays, ways)
-
-        def extra(scene: Scene) -> None:
-            if more is not None:
-                more(scene)
-            if base is not None:
-                mark_changes(scene, env.simulation, base.simulation, changed)
-
-        png = render_scene(env.simulation, size_px=size, region=region, overrides=plot_keys(overlays), extra=extra)
+        before = None if base is None else base.simulation
+        more, plot = additions(env, overlays, ways), plot_keys(overlays)
+        shown: dict[str, Any] = {"extra": more, "overrides": plot, "before": before, "changed": changed}
+        png = render_scene(env.simulation, size_px=size, region=region, **shown)
     x, y, right, top = scenario.world.bounds
     counts = counts_of(scenario)
     return SnapshotResult(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,7 @@ from irsim.graphics.scene.scene import Fog, Line, Mark, Region, Scene, Stroke, r
 from irsim.graphics.scene.style import Color, Palette
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.objects.views import views
+from irsim.rendering.compared import mark_changes
 from irsim.rendering.readability import make_legible
 from irsim.simulation.events import BETWEEN_STEPS, Event, passable_names
 
@@ -72,6 +73,8 @@ def render_scene(
     region: Sequence[float] | None = None,
     overrides: Mapping[str, Any] | None = None,
     extra: Extra | None = None,
+    before: Simulation | None = None,
+    changed: Collection[str] = (),
 ) -> bytes:
     """Draw the present state of one world as a PNG with few colours (about 20 kB).
 
@@ -86,6 +89,8 @@ def render_scene(
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the whole world.
         overrides: Object plot keys.
         extra: Callback that adds marks or labels to the scene.
+        before: Simulation of another scenario to compare with.
+        changed: Names of the objects that differ from it, which are marked.
 
     Returns:
         The content of the PNG file.
@@ -93,6 +98,8 @@ def render_scene(
     scene, pictures = legible_scene(
         simulation, world, labels=labels, viewpoint=viewpoint, region=region, overrides=overrides, extra=extra
     )
+    if before is not None:
+        mark_changes(scene, simulation, before, changed)
     x0, x1, y0, y1 = scene.extent
     size = fitting_size(x1 - x0, y1 - y0, size_px, _DPI)
     figure = SceneFigure(size, _DPI, pictures=pictures, halo=True)

@@ -99,15 +99,14 @@ def _row(
     ends = [goals[0][:2] for w in worlds for k in entry if (goals := state.goals(w * objects + k))]
     ways = [_goals(scenario, scenario.objects[k], state.goals(shown * objects + k)) for k in some]
     differ = any(record.shape != first.shape for record in records)
+    reference = _reference_point(first, state, shown * objects + entry[0])
     return SceneRow(
         names=[scenario.objects[k].name for k in some],
         count=len(records),
         role=first.role,
         drive=None if first.static or first.kinematics is None else str(getattr(first.kinematics, "name", "")),
         behavior=None if first.static or behavior is None else _behavior(behavior) + _task(first),
-        footprint=footprint_of(first)
-        + (", each its own" if differ else "")
-        + _reference_point(first, state, shown * objects + entry[0]),
+        footprint=footprint_of(first) + (", each its own" if differ else "") + reference,
         poses=[_pose(state.pose[shown * objects + k]) for k in some],
         goals=[
             None if not goals else _goal(scenario.objects[k], goals[0]) for k, goals in zip(some, ways, strict=True)
