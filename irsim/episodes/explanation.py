@@ -101,7 +101,7 @@ def summary_message(
         None if pushes else closeness_message(robots),
         others_arrived_message(scenario, facts.events),
         f"no contacts between {name_of_humans(facts.humans)}" if not contacts and _people_may_overlap(facts) else None,
-        contacts_message(contacts, name_of_humans(_humans_in(facts, contacts)), brief=said),
+        contacts_message(contacts, name_of_humans(_humans_in(facts, contacts)), brief=said) if contacts else None,
         others_between_steps_message(facts.between),
         jam_message(simulation, facts.jammed),
         _others_standing_message(facts),

@@ -87,16 +87,14 @@ def find_incidents(humans: Collection[str], events: Sequence[Event]) -> Incident
     return incidents
 
 
-def contacts_message(contacts: Sequence[Event], who: str, *, brief: bool) -> str | None:
-    """How often humans touched each other, and which two did first; None if they never did.
+def contacts_message(contacts: Sequence[Event], who: str, *, brief: bool) -> str:
+    """How often humans touched each other, and which two did first.
 
     Args:
-        contacts: From :func:`find_human_contacts`.
+        contacts: From :func:`find_human_contacts`; at least one.
         who: Their name in texts (:func:`irsim.simulation.roles.name_of_humans`).
         brief: Leave out the first one, which another message has.
     """
-    if not contacts:
-        return None
     first = contacts[0]
     hit = f"{'first ' * (len(contacts) > 1)}{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
     return f"{plural(len(contacts), 'contact')} between {who}" + ("" if brief else f" ({hit})")
