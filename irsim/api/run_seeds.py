@@ -113,7 +113,7 @@ def _summary(episodes: Sequence[RunResult], crowded: Sequence[int], left: Sequen
 def _findings(
     path: str | Path | None, text: str | None, strict: bool, limits: Limits | None, episodes: Sequence[RunResult]
 ) -> list[Finding]:
-    """What a check of the scenario finds, and the warnings that its episodes confirm."""
+    """Findings of a check of the scenario; hints of collisions that happened in an episode become warnings."""
     first = episodes[0]
     if first.policy or first.behavior or (path is not None and not Path(path).is_file()):
         return first.warnings  # which consider what drives the robots

@@ -73,7 +73,7 @@ def summary_message(
         driven: The policy or behavior that drove all robots, in words; None if each had its own.
         left: Objects that left the world.
         zones: Results of the zones.
-        rounds: What to say of robots that patrol.
+        rounds: Message about robots that patrol or wander; None if there is nothing to say.
     """
     simulation, scenario, jumps = facts.simulation, facts.scenario, facts.incidents.jumps
     names = {robot.name for robot in robots}

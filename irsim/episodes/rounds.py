@@ -38,7 +38,7 @@ def laps_of(facts: EpisodeFacts) -> dict[str, int]:
 
 
 def when_it_ends(robots: Iterable[ObjectRecord]) -> str | None:
-    """What is to be known before a run of robots of which some never end: that their first lap ends it."""
+    """Say before a run that the first lap of robots without a last goal ends it; None if there are no such robots."""
     all_robots = list(robots)
     endless = [record for record in all_robots if not has_one_end(record) and not record.static]
     if not endless:
@@ -130,5 +130,5 @@ def _doing(endless: Sequence[ObjectRecord]) -> str:
 
 
 def _unit(record: ObjectRecord) -> str:
-    """What is counted: goals of one that wanders, trips of one that goes to and fro, laps of one with waypoints."""
+    """The unit that is counted: goals of a wandering robot, laps round several goals, else trips to and fro."""
     return "goal" if record.wander else "lap" if len(record.goals) > 1 else "trip"

@@ -62,7 +62,7 @@ _NUMBER = r"-?\d+(?:\.\d+)?"
 _ANY = "|".join(re.escape(name) for name in sorted(_BY_NAME, key=len, reverse=True))
 _QUANTITY = re.compile(rf"({_NUMBER}(?:\s*(?:x|×|by|to|-|and)\s*{_NUMBER})*)\s*[-]?\s*({_ANY})(?![^\W\d])")
 _BETWEEN = re.compile(r"(?:\s|,|x|×|by|and|to)*")
-"""What may stand between quantities."""
+"""Spaces, commas and words that may stand between quantities."""
 
 
 def unit_answer(topic: str) -> Answer | None:

@@ -206,7 +206,7 @@ class RunsResult(Result):
     episodes: list[RunResult]
     """The episodes, in the order of the seeds."""
     warnings: list[Finding]
-    """What the check of the scenario finds, hints included."""
+    """Findings of the scenario check, hints included."""
     version: str
     """Version of irsim."""
 

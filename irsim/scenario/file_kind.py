@@ -92,7 +92,7 @@ class FileKind(Generic[Model]):
 
         Args:
             document: The document.
-            context: What validators of the model know besides.
+            context: Further data that pydantic passes to the validators of the model.
         """
         errors = [item for item in document.problems if item.severity == "error"]
         if errors and (document.fatal or document.data is None):

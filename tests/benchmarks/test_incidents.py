@@ -70,7 +70,10 @@ def test_robots_that_left_or_jumped_are_in_the_summary_of_a_run() -> None:
     assert [item.name for item in result.left] == ["stray"]
     assert result.jumped == ["fast"]
     [jump] = [event for event in result.events if event.kind == "overshoot" and event.object == "fast"][:1]
-    assert f"'fast' jumped over its goal at {round(jump.time, 2):g} s, at no step nearer than 0.3 m " in result.summary
+    assert (
+        f"'fast' jumped over its goal at {round(jump.time, 2):g} s, at no step from then on nearer than 0.3 m "
+        in result.summary
+    )
     assert "(raise goal_threshold above that or lower step_time)" in result.summary
     assert "'stray' left the world at" in result.summary
 

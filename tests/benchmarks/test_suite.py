@@ -204,7 +204,7 @@ def test_a_scenario_of_a_suite_is_run_alone(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.chdir(tmp_path)
     written(tmp_path, protocols=["freeze", "yield"])
     result = irsim.run("mine.yaml/one/yield", seed=3, policy="dash")
-    assert result.reproduce == "irsim run mine.yaml/one/yield --seed 3 --behavior dash"
+    assert result.reproduce == "irsim run mine.yaml/one/yield --seed 3 --policy dash"
     assert result.time_limit == 5.0
     [episode] = irsim.benchmark({"one": suite_scene("mine.yaml/one/yield").document()}, ["dash"], [3]).episodes
     assert (episode.outcome, episode.steps) == (result.outcome, result.steps)

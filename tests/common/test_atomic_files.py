@@ -81,7 +81,7 @@ def test_of_two_programs_that_write_a_new_file_one_is_told(tmp_path: Path) -> No
     assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("run.csv", "second")]
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="needs a folder in which nobody can make files")
+@pytest.mark.skipif(sys.platform != "linux", reason="needs /proc, a folder in which even root cannot create files")
 def test_a_file_that_cannot_be_written_is_named_as_the_user_did() -> None:
     for suffix in (".gif", ".mp4", ".png"):
         told = r"the file cannot be written .*; name another one"

@@ -94,5 +94,5 @@ def test_the_codes_of_errors_are_found_in_every_form_of_a_report() -> None:
         "error: unknown-topic: 'blorp' is not a topic",
         "collision: 'robot' hit 'wall'\n2. warning stacked at robot",
     ]
-    found = [error_codes(form) for form in forms]
-    assert found == [["unknown-key"], ["unknown-key"], ["invalid-scenario", "unknown-key"], ["unknown-key"], [], []]
+    codes = [error_codes(form) for form in forms]
+    assert codes == [["unknown-key"], ["unknown-key"], ["invalid-scenario", "unknown-key"], ["unknown-key"], [], []]

@@ -6,7 +6,7 @@
     truth: wrong           # or right
     why: The robot drives through people that are passable.
     before: accepted       # or rejected: the first verdict, before the grader was mended
-    fails: [solid]         # assertions that must be among those that do not hold, of a wrong answer
+    fails: [solid]         # assertions that a wrong answer must fail; others may fail, too
     gold: people           # a gold that the answer starts from; without one it starts from the given files
     replace: {old: new}    # what differs in the texts of the gold; each occurs there
     files: {name: text}    # further files

@@ -1,4 +1,4 @@
-"""What is wrong with a case is found when it is read, not when an answer is graded."""
+"""A mistake in a case is reported when the case is read, not when an answer is graded."""
 
 from __future__ import annotations
 

@@ -200,7 +200,7 @@ def test_a_map_beside_the_scenario_is_graded_with_it(tmp_path: Path) -> None:
 def test_an_episode_may_be_driven_by_another_behavior() -> None:
     episodes = [
         {"seconds": 30, "assert": [{"id": "as-written", "arrive": {"of": "robots"}}]},
-        {"seconds": 30, "behavior": "{name: dash}", "assert": [{"id": "dash", "arrive": {"of": "robots", "share": 0}}]},
+        {"seconds": 30, "behavior": "dash", "assert": [{"id": "dash", "arrive": {"of": "robots", "share": 0}}]},
     ]
     wall = "obstacle: [{shape: {name: rectangle, length: 0.5, width: 5}, state: [7, 4.5, 0]}]\n"
     text = RIGHT.replace("dash", "follow") + wall

@@ -13,5 +13,5 @@ def test_assertions_that_an_empty_world_fulfils_or_nothing_breaks_are_named() ->
         {"id": "nothing-else", "count": {"of": "obstacles", "number": 0}},
         {"id": "anything", "count": {"of": "all", "number": {"ge": 0}}},
     )
-    found = list(idle_assertions(case, [Answer("right", {"scenario.yaml": RIGHT})]))
-    assert found == [("nothing-else", "empty_holds"), ("anything", "empty_holds"), ("anything", "unbroken")]
+    reported = list(idle_assertions(case, [Answer("right", {"scenario.yaml": RIGHT})]))
+    assert reported == [("nothing-else", "empty_holds"), ("anything", "empty_holds"), ("anything", "unbroken")]

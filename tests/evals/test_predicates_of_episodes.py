@@ -150,12 +150,12 @@ def test_who_goes_round_for_ever_never_arrives_for_good(behavior: str, share: in
             {"number": 1, "line": None, "way_of": "north", "direction": "left_to_right", "ahead": False},
             True,
         ),
-        ([EAST], {"number": 1, "line": None, "way_of": "nobody"}, False),
+        ([EAST], {"number": 1, "line": None, "way_of": "missing"}, False),
     ],
 )
 def test_a_line_is_crossed_in_a_direction(robots: list[str], keys: dict[str, Any], passes: bool) -> None:
     text = ", ".join(robot.replace("0.2}", "0.2}, unobstructed: true") for robot in robots)
-    ways = {"north": {"inside": [4, 0, 6, 4]}, "nobody": {"named": "nobody"}}
+    ways = {"north": {"inside": [4, 0, 6, 4]}, "missing": {"named": "missing"}}
     material = world(f"world: {{width: 10, height: 10}}\nrobot: [{text}]\n", **ways)
     line = {"of": "robots", "line": [[5, 4], [5, 6]], **keys}
     assert seen(material, "crosses", line, 12).passed == passes

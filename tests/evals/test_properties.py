@@ -36,8 +36,8 @@ def of_robot(keys: str, *names: str) -> list[Any]:
     ],
 )
 def test_a_steering_angle_is_what_limits_and_drive_leave(car: str, left: float | None, right: float | None) -> None:
-    found = of_robot(car, "steer_left", "steer_right", "steer")
-    assert found == pytest.approx([left, right, left])
+    angles = of_robot(car, "steer_left", "steer_right", "steer")
+    assert angles == pytest.approx([left, right, left])
 
 
 @pytest.mark.parametrize(
@@ -65,8 +65,8 @@ def test_a_steering_angle_is_what_limits_and_drive_leave(car: str, left: float |
     ],
 )  # fmt: skip
 def test_a_property_is_what_the_built_world_does(keys: str, name: str, value: Any) -> None:
-    [found] = of_robot(keys, name)
-    assert found == (pytest.approx(value) if isinstance(value, float) else value)
+    [actual] = of_robot(keys, name)
+    assert actual == (pytest.approx(value) if isinstance(value, float) else value)
 
 
 def _forms() -> list[tuple[str, bool]]:
@@ -136,9 +136,9 @@ obstacle:
         (0.75, {"ge": "= robots.width + 0.1"}, False),  # it holds for each of them, the wider one too
         (0.75, {"le": "= robots.width + 0.1"}, False),  # the narrower one too
         (0.6, "= robots.width + 0.2", True),
-        (0.75, "= robots.width + 0.2", False),  # two widths are no single value
+        (0.75, "= robots.width + 0.2", False),  # the robots have two widths, not a single value
         (0.6, {"eq": "= world.width / 10 - 0.2", "tol": 0.001}, True),
-        (0.6, {"ge": "= statics.radius"}, False),  # rectangles have none
+        (0.6, {"ge": "= statics.radius"}, False),  # rectangles have no radius
     ],
 )
 def test_a_measured_value_may_depend_on_the_answer(width: float, limit: Any, passes: bool) -> None:
@@ -179,7 +179,7 @@ REGISTERED = {name for registry in (BEHAVIORS, KINEMATICS) for name in registry.
 
 def _lists_of_names(path: Path) -> list[str]:
     """Literal lists, tuples, sets and sums of conditions with two or more names of behaviors or drives."""
-    found = []
+    lists = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, (ast.List, ast.Tuple, ast.Set)):
             items = node.elts
@@ -189,8 +189,8 @@ def _lists_of_names(path: Path) -> list[str]:
             continue
         names = [item.value for item in items if isinstance(item, ast.Constant) and item.value in REGISTERED]
         if len(names) > 1:
-            found.append(f"{path.relative_to(ROOT)}:{node.lineno}: {', '.join(names)}")
-    return found
+            lists.append(f"{path.relative_to(ROOT)}:{node.lineno}: {', '.join(names)}")
+    return lists
 
 
 def test_no_list_of_behaviors_or_drives_stands_beside_the_registry() -> None:

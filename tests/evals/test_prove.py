@@ -26,7 +26,7 @@ def test_limits_count_processor_time() -> None:
 
 @pytest.fixture
 def slow_mutant(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The grading of one mutant uses up its time; those of others are made up."""
+    """The first mutant exceeds the time limit of grading; all other outcomes are made up."""
 
     def run(work: Any, jobs: Iterable[Any], *_: Any) -> Iterator[Any]:
         late = LimitError("the grading took more than 120 s of processor time")

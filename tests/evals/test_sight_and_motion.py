@@ -1,4 +1,4 @@
-"""What bodies see, where they are at a time, and how they move: scenes whose numbers follow from arithmetic."""
+"""Sight, places and motion of bodies, measured in scenes whose numbers follow from arithmetic."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.evals.conftest import failed, made_up, seen, world
 OMNI = "kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, behavior: {name: dash}, vel_max: [1, 1]"
 DIFF = "kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, behavior: {name: dash}, vel_max: [1, 1]"
 LIDAR = "sensors: [{name: lidar2d, range_max: 3, angle_range: 1.5708, number: 31}]"
-WATCH = {"watch": {"named": "watch"}, "one": {"named": "one"}, "two": {"named": "two"}, "nobody": {"named": "nobody"}}
+WATCH = {"watch": {"named": "watch"}, "one": {"named": "one"}, "two": {"named": "two"}, "missing": {"named": "missing"}}
 
 
 def hall(watcher: str, *others: str, static: str = "") -> Material:
@@ -40,7 +40,7 @@ CONE = f"{STANDS}, fov: 1.5707963, fov_radius: 3"
         ({"what": "one", "number": 1}, True),
         ({"what": "two", "number": 1}, False),  # passes beyond the range
         ({"what": "two", "number": 0}, True),
-        ({"what": "nobody", "number": 0}, False),  # there is nobody to see
+        ({"what": "missing", "number": 0}, False),  # no object has this name
         ({"what": "one", "by": "fov"}, True),
         ({"what": "one", "by": "lidar2d"}, False),
         # the edge of the cone at x = 3 is 2 m below the watcher; the disc reaches it at y = 3 - 0.2 * sqrt(2)
@@ -56,7 +56,7 @@ CONE = f"{STANDS}, fov: 1.5707963, fov_radius: 3"
         ({"what": "one", "since": -0.01, "number": 0}, True),  # at the end it is gone
         ({"what": "one", "since": -0.01}, False),
         ({"of": "two"}, False),  # has no sensor
-        ({"of": "nobody"}, False),
+        ({"of": "missing"}, False),
     ],
 )
 def test_a_field_of_view_is_passed_in_time(keys: dict[str, Any], passes: bool) -> None:
@@ -130,7 +130,7 @@ def test_assertions_about_the_start_may_be_about_what_is_seen() -> None:
         (f"{OMNI}, state: [1, 5, 0], goal: [9, 5, 0]", {"at": 3, "heading": "90deg"}, False),
         (f"{OMNI}, state: [1, 5, 0], goal: [9, 5, 0]", {"at": 9, "x": {"ge": 0}}, False),  # after the end
         (f"{OMNI}, state: [1, 5, 0], goal: [9, 5, 0]", {"at": 0, "x": 1}, True),
-        (f"{OMNI}, state: [1, 5, 0], goal: [9, 5, 0]", {"at": 0, "speed": {"ge": 0}}, False),  # there is none
+        (f"{OMNI}, state: [1, 5, 0], goal: [9, 5, 0]", {"at": 0, "speed": {"ge": 0}}, False),  # no speed at the start
         # turns to the left at 1 rad/s first: its goal is behind it
         (f"{DIFF}, state: [5, 5, 0], goal: [1, 5.01, 0]", {"at": 1, "heading": 1.0, "turn": 1}, True),
         (f"{DIFF}, state: [5, 5, 0], goal: [1, 4.99, 0]", {"at": 1, "heading": -1.0, "turn": -1}, True),

@@ -199,8 +199,8 @@ def test_an_answer_of_several_scenarios_is_graded_one_by_one() -> None:
     assert seen["five"] == (True, "obstacles: 5")
     assert seen["twenty-five"] == (True, "obstacles: 25")
     assert seen["fifteen"] == (False, "LookupError: there is no file crowd-15.yaml")
-    assert seen["behaviors"] == (True, "behaviors: [orca, dash]")
-    assert seen["seeds"] == (False, "rows[*].success.n: 10, 9")
+    assert seen["behaviors"] == (True, "1: result.json")
+    assert seen["seeds"] == (False, "1: result.json; result.json has at rows[*].success.n: 10, 9")
 
 
 def test_programs_run_only_where_that_is_allowed(tmp_path: Path) -> None:

@@ -79,9 +79,9 @@ def test_the_example_of_a_predicate_can_be_used() -> None:
         for item in [*case.check, *(one for plan in case.episodes for one in plan.check)]
     }
     assert len(used) > 30
-    found = examples()
-    assert set(found) == used
-    for name, (_, text) in found.items():
+    by_predicate = examples()
+    assert set(by_predicate) == used
+    for name, (_, text) in by_predicate.items():
         assertion = Assertion.model_validate(yaml.safe_load(f"{{id: a-name, {name}: {text}}}"))
         assert assertion.predicate.name == name
 

@@ -1,8 +1,8 @@
 """The texts that models read, and what recorded logs of agents say of the tools as they are now.
 
 After a change of a skill, of the server's instructions or of the list of tools, run ``python -m tests.evals.texts``. It
-makes the calls of the logs in ``evals/transcripts`` that only read (with ``--all`` those that simulate, too) and says
-which answers lack what mattered when they were recorded, and how much there is to read. With ``--model`` a model
+makes the calls of the logs in ``evals/transcripts`` that only read (with ``--all`` also the calls that simulate) and
+says which answers lack what mattered when they were recorded, and how much there is to read. With ``--model`` a model
 answers cases with the skills of the last commit and with the present ones, in turn. The result is kept in
 ``evals/texts.json``; a test fails while a text is newer.
 """
@@ -135,7 +135,7 @@ def committed_skills(place: Path) -> Path:
 
 
 def changed_texts(now: dict[str, dict[str, Any]], kept: dict[str, Any]) -> list[str]:
-    """What has changed since the last comparison, in words."""
+    """Describe each text that has changed since the last comparison: its name, and its size before and now."""
     old = kept.get("texts", {})
     return [
         f"{name} ({old.get(name, {}).get('bytes', 0):,} → {now[name]['bytes']:,} bytes)"

@@ -1,4 +1,4 @@
-"""What answers say to do next: never a step that was just done, a file that is gone, or a run without robots."""
+"""Next steps that answers advise: never a step that was just done, a file that is gone, or a run without robots."""
 
 from __future__ import annotations
 

@@ -234,9 +234,9 @@ async def test_next_after_people_stand_since_a_collision_and_after_what_is_parke
     assert "2 of 2 moving obstacles were stopped by a collision" in jam["summary"]
     assert "view=collisions" in jam["next"]
     assert "2 of 2 moving obstacles were stopped by a collision" in tried["dry_run"]
-    assert "dry_run" in tried["next"]
+    assert "when it was tried" in tried["next"]
     assert still["next"].startswith("Nothing to change")
-    assert "dry_run" not in looked["next"]
+    assert "tried" not in looked["next"]
 
 
 POCKET = """

@@ -31,7 +31,7 @@ robot:
     goal: [[[0, 0, 0], [8, 8, 0]]]
     vel_max: [4, 1]
     vel_min: [-4, -1]
-    goal_threshold: 0.3
+    goal_threshold: 0.5
     behavior: {name: dash, loop: true}
     sensors: [{type: lidar2d, number: 91, range_max: 8, angle_range: 6.28, plot: {alpha: 0.2}}]
     color: cycle

@@ -35,7 +35,7 @@ def test_a_goal_inside_the_turning_circle_needs_reverse(goal: str, local: str) -
     [message] = messages(text(goal, local=local))
     assert "needs reverse" in message
     assert "inside its turning circle of radius 5.49 m, so it stands still" in message
-    assert irsim.validate(text=text(goal)).findings[0].fix.startswith("vel_min: [-2, -0.5] lets it back up")
+    assert named("turning-circle", text(goal))[0].fix.startswith("vel_min: [-2, -0.5] lets it back up")
     result = irsim.run(text=text(goal, local=local))
     assert result.outcome == "timeout"
     assert "it needs reverse" in (result.reason or "")

@@ -75,7 +75,7 @@ def written(task: Task, filled: bool = True) -> tuple[str, str]:
     """The template that fits best, and the reply that goes with it.
 
     Args:
-        task: What the agent sees.
+        task: The part of a case that the agent sees.
         filled: Whether numbers of the request become values of parameters.
     """
     request = "\n".join(task.requests)

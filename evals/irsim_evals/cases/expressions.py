@@ -59,7 +59,7 @@ def substitute(
     """Replace every ``$(expression)`` in a value.
 
     A text that is nothing but an expression becomes its value; within a text it becomes its shortest form, or a word
-    with ``$(n: words)``. What is wrong with an expression goes into ``problems``, or is raised without them.
+    with ``$(n: words)``. Problems of expressions are added to ``problems``; without such a list, the first is raised.
     """
     if isinstance(value, dict):
         return {
@@ -83,7 +83,7 @@ def substitute(
 
 
 _FAILURES = (ValueError, SyntaxError, TypeError, ArithmeticError, LookupError)
-"""What evaluating an expression may raise."""
+"""Exceptions that the evaluation of an expression may raise."""
 
 
 def _problem(path: Path, expression: str, values: Mapping[str, Any], error: Exception) -> Diagnostic:

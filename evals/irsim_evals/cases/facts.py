@@ -25,4 +25,4 @@ OTHER_FACTS = {
     "reply": ("reply", "replies"),
     "text": ("comments", "layout"),
 }
-"""What is not a selection of bodies → its facts; a mirror is a fact that can only be free."""
+"""Subject that is not a selection of bodies → its facts; a mirror is a fact that can only be free."""

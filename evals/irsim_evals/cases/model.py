@@ -16,7 +16,7 @@ from irsim.options.base import problem
 from irsim_evals.cases.drawing import PICTURES, Drawing, Record
 from irsim_evals.cases.facts import FACTS, GROUPS, OTHER_FACTS
 from irsim_evals.grader.matching import Quantity, Seeds
-from irsim_evals.grader.predicates._base import Predicate, registered
+from irsim_evals.grader.predicates._base import Predicate, registered, stands_at_start
 from irsim_evals.grader.relations import unknown_words
 from irsim_evals.grader.selection import BUILT_IN, Selection, Selections, Selector
 from irsim_evals.grader.words import BehaviorName, Listed, OneOf, Regex
@@ -94,7 +94,8 @@ def _in_its_place(of_episode: bool) -> AfterValidator:
 
     def check(assertion: Any) -> Any:
         name, subject = assertion.predicate.name, assertion.predicate.subject
-        if (subject == "episode") != of_episode:
+        fits = subject == "episode" if of_episode else stands_at_start(assertion.predicate)
+        if not fits:
             where = "assert" if of_episode else "assert of an item of episodes"
             what = "an episode" if subject == "episode" else "the start or the answer"
             raise problem("invalid-value", f"{name!r} is about {what}", fix=f"move it to the key {where}")
@@ -168,7 +169,7 @@ class Waiver(Record):
 def _missing(name: str) -> str:
     path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts or path.suffix.lower() not in PICTURES:
-        raise ValueError(f"missing: {name!r} is no path of a picture in the folder ({', '.join(PICTURES)})")
+        raise ValueError(f"missing: {name!r} is not the path of a picture in the folder ({', '.join(PICTURES)})")
     return name
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from irsim.common.json_output import schema_of_file
 from irsim_evals.cases.model import Case
-from irsim_evals.grader.predicates._base import registered
+from irsim_evals.grader.predicates._base import registered, stands_at_start
 
 __all__ = ["case_schema", "schema_text"]
 
@@ -29,8 +29,9 @@ def case_schema() -> dict[str, Any]:
     for name in predicates:
         said[name] = {key: value for key, value in said[name].items() if key != "default"}
         said[name]["anyOf"] = [one for one in said[name]["anyOf"] if one.get("type") != "null"]
-    of_start = [name for name, one in registered().items() if one.subject != "episode"]
-    for place, names in ((schema, of_start), (parts["EpisodePlan"], set(predicates) - set(of_start))):
+    of_start = [name for name, one in registered().items() if stands_at_start(one)]
+    of_episodes = [name for name, one in registered().items() if one.subject == "episode"]
+    for place, names in ((schema, of_start), (parts["EpisodePlan"], of_episodes)):
         place["properties"]["assert"]["anyOf"][0]["items"] = {
             "$ref": "#/$defs/Assertion", "oneOf": _one_of(sorted(names)),
         }  # fmt: skip

@@ -76,7 +76,7 @@ PUBLISHED = Store(folder("cases"), folder("golds"))
 
 
 def case_files(store: Store = PUBLISHED) -> dict[str, Path]:
-    """Id → file of each case, those of sets included, in alphabetical order."""
+    """Id → file of each case, including the cases in sets, in alphabetical order."""
     return {path.stem: path for path in sorted(store.cases.rglob("*.yaml"), key=lambda path: path.stem)}
 
 
@@ -84,15 +84,16 @@ def case_ids(store: Store = PUBLISHED, *, sets: bool = False) -> list[str]:
     """Ids of the cases that commands are about unless others are named.
 
     Args:
-        store: Where they lie.
-        sets: Also those of sets directly below the folder; deeper ones, such as the tasks of the skills, must be named.
+        store: Folders of the cases and their golds.
+        sets: Whether cases in sets directly below the folder are included; cases in deeper sets, such as the tasks of
+            the skills, must be named.
     """
     patterns = ("*.yaml", "*/*.yaml") if sets else ("*.yaml",)
     return sorted({path.stem for pattern in patterns for path in store.cases.glob(pattern)})
 
 
 def all_case_ids(store: Store = PUBLISHED) -> list[str]:
-    """Ids of all cases, including those of sets."""
+    """Ids of all cases, including the cases in sets."""
     return list(case_files(store))
 
 

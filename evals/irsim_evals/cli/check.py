@@ -28,7 +28,7 @@ MIN_GOLDS = 2
 _IDLE = {"empty_holds": "an empty world fulfils it", "unbroken": "no change of the right answers breaks it"}
 """Meaning of what is reported of assertions that tell nothing."""
 _MAX_LISTED = 10
-"""Number of files up to which those that are right are listed."""
+"""Largest number of case files for which each valid file gets a line of its own."""
 _MAX_FAILED = 3
 """Failed assertions of a gold that are listed."""
 
@@ -83,7 +83,7 @@ def _named(path: Path) -> Path:
 
 
 def _look(path: Path, store: Store | None) -> tuple[list[Diagnostic], str]:
-    """The problems of a file, and what a right one holds; those of its golds, too, if their store is given."""
+    """The problems of a case file (with a store, also of its golds), and a summary of the file if it is valid."""
     try:
         instance = instance_of(load_path(path))
     except CaseError as error:

@@ -22,7 +22,7 @@ from irsim.scenario.yaml.formatting import flow
 from irsim_evals.cases.expressions import substitute
 from irsim_evals.cases.store import PUBLISHED, all_case_ids, case_of, raw_case
 from irsim_evals.grader.matching import TOLERANCES, Counted, Match, Quantity, Seeds
-from irsim_evals.grader.predicates._base import registered
+from irsim_evals.grader.predicates._base import registered, stands_at_start
 from irsim_evals.grader.properties import PROPERTIES
 from irsim_evals.grader.selection import BUILT_IN, Selector
 from irsim_evals.grader.words import Listed, OneOf, Regex
@@ -58,7 +58,10 @@ def predicates(
         raise ArgumentError(f"no predicate is called {name!r}", suggestion(name, known, "irsim-evals predicates"))
     one = known[name]
     example = examples().get(name)
-    lines = [f"{name}: {_plain(one.__doc__)}", f"It is about {_SUBJECTS[one.subject]}.", "", *_keys(one), ""]
+    place = (
+        ", or under assert, where it is about the start" if one.subject == "episode" and stands_at_start(one) else ""
+    )
+    lines = [f"{name}: {_plain(one.__doc__)}", f"It is about {_SUBJECTS[one.subject]}{place}.", "", *_keys(one), ""]
     lines += [f"example ({example[0]}): {{id: a-name, {name}: {example[1]}}}", ""] if example else []
     return _show([*lines, _NUMBERS, _MATCH, *_keys(Match)])
 
@@ -94,15 +97,15 @@ def examples() -> dict[str, tuple[str, str]]:
 
     One that needs no selections of its own case is preferred.
     """
-    found: dict[str, list[tuple[bool, int, str, str]]] = {}
+    uses_of: dict[str, list[tuple[bool, int, str, str]]] = {}
     for case_id in all_case_ids(PUBLISHED):
         raw, values = raw_case(case_id), case_of(case_id).values
         for item in [item for plan in (raw, *raw.get("episodes", ())) for item in plan.get("assert", ())]:
             for name in registered().keys() & item.keys():
                 text = _line(substitute(item[name], values))
                 own = bool(set(re.findall(r"[\w-]+", text)) & set(raw.get("select", ())))
-                found.setdefault(name, []).append((own, len(text), case_id, text))
-    return {name: min(uses)[2:] for name, uses in found.items()}
+                uses_of.setdefault(name, []).append((own, len(text), case_id, text))
+    return {name: min(uses)[2:] for name, uses in uses_of.items()}
 
 
 def _line(value: Any) -> str:

@@ -78,8 +78,8 @@ def run(
 ) -> None:
     """Let baselines or a model answer the cases, grade the answers and write results.json.
 
-    The baselines need neither a model nor the network: ``irsim-evals run --arm baselines``. With --against the texts of
-    --skills and --instructions are those of the second arm. Exits with 0 when all arms have run, however many cases
+    The baselines need neither a model nor the network: ``irsim-evals run --arm baselines``. With --against, only the
+    second arm gets the texts of --skills and --instructions. Exits with 0 when all arms have run, however many cases
     passed.
     """
     arms = _arms(arm)

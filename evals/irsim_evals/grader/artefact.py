@@ -29,9 +29,9 @@ _MAX_FILES = 200
 _MAX_THINGS = 5000
 """Number of files, folders and links that are named."""
 _MAX_BLOB_BYTES = 16_000_000
-"""Size of a file that is no text and is read."""
+"""Largest size of a file that is read although it is not text [bytes]."""
 _MAX_BLOBS_BYTES = 64_000_000
-"""Size of all of them together."""
+"""Largest size of all such files together [bytes]."""
 _MAX_DIGEST_BYTES = 64_000_000
 """Size of a file whose digest is told."""
 _SCENARIO = (".yaml", ".yml", ".json")
@@ -74,7 +74,7 @@ class Answer:
         files: Path in the folder → text.
         reply: Last message.
         replies: Message after each turn.
-        blobs: Path in the folder → content of a picture, an array, or another file that is no text.
+        blobs: Path in the folder → content of a picture, an array, or another file that is not text.
         others: Path in the folder → what was not opened there, in words; the path of a folder ends with ``/``.
         trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
         calls: Tools that the agent called, in their order; None if there is no log of them.
@@ -162,7 +162,7 @@ def _described(path: Path) -> str:
 
 
 def _text(path: Path) -> str | None:
-    """The text of a file; None if it is none."""
+    """The text of a file; None if the file is not text."""
     content = path.read_bytes()
     scenario = path.suffix.lower() in _SCENARIO
     if path.suffix.lower() in BINARY or (b"\0" in content and not scenario):
@@ -259,7 +259,7 @@ def cost_of(path: Path) -> Cost:
 
 
 def calls_of(path: Path) -> tuple[tuple[Call, ...] | None, list[str]]:
-    """The calls in the log of an agent, None if there is none that can be read, and notes about what is left out.
+    """The calls in the log of an agent, or None if no log can be read, and notes about what is left out.
 
     Args:
         path: The file. A link is not followed.

@@ -65,8 +65,8 @@ class GradedBody:
         extent: Length and width in the body frame, along and across its heading.
         ranges: Greatest speeds ``forward``, ``backward``, ``leftward``, ``rightward`` [m/s], turn rates ``turn_left``,
             ``turn_right`` [rad/s] and steering angles ``steer_left``, ``steer_right`` [rad] that its limits, its drive
-            and its behavior allow, and the larger ones of two sides, ``sideways``, ``turn``, ``steer``; those that its
-            drive has and that something limits.
+            and its behavior allow; ``sideways``, ``turn`` and ``steer`` are the larger value of both sides. An entry is
+            missing if its drive has no such motion or nothing limits it.
         avoided: Role of the objects that it avoids, or ``all``; None if it avoids none.
         sensors: Options of each sensor as the simulator holds them.
         color: As ``#rrggbb`` where it is a color; None for the color of its role.
@@ -189,7 +189,7 @@ def _is_disc(view: ObjectView) -> bool:
 
 
 def _ranges(drive: Any, low: list[float], high: list[float], behavior: Any) -> dict[str, float]:
-    """What limits of controls, a drive and a behavior allow to each side."""
+    """The greatest speeds, turn rates and steering angles that limits, a drive and a behavior allow to each side."""
     if not high:
         return {}
     speeds, turns = {"forward": high[0], "backward": -low[0]}, dict[str, float]()

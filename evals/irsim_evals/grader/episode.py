@@ -169,7 +169,7 @@ def _exact(options: Any) -> Any:
 
 
 def _looks(scene: GradedScene) -> list[Look]:
-    """What every sensor and every field of view that the scenario gives meets now."""
+    """The looks of all sensors and fields of view in the scenario: the objects that each of them meets now."""
     looks = []
     views = sorted([*scene.env.robot_list, *scene.env.obstacle_list], key=lambda view: view.index)
     index = {view.id: view.index for view in views}

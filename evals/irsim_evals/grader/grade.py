@@ -248,7 +248,7 @@ def _in_scene(material: Material, item: Any, seed: int) -> Any:
 
 
 def _episodes(plan: Any, material: Material, outcomes: list[Outcome], whole: bool) -> None:
-    """Run the episodes of a plan one after the other, so that only those of one seed are held in memory."""
+    """Run the episodes of a plan one after the other, so that memory holds only the episodes of one seed."""
     seen: dict[str, list[Observation]] = {item.id: [] for item in plan.check}
     watched = any(item.predicate.looks for item in plan.check)
     for seed in plan.seeds:

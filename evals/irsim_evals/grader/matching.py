@@ -119,10 +119,10 @@ class Relation:
 
 
 def _relation(value: Any) -> Relation | None:
-    """The relation that a text is.
+    """The relation that a text expresses; None for any other value.
 
     Raises:
-        ValueError: It is none, although it begins like one.
+        ValueError: The text begins like a relation but is not a valid one.
     """
     if not isinstance(value, str) or not value.lstrip().startswith("="):
         return None
@@ -188,7 +188,7 @@ class Match(BaseModel):
     given: bool | None = None
     """Whether there is a value at all."""
     or_none: bool = False
-    """Whether no value is accepted besides, as in "0 or none": ``{eq: 0, or_none: true}``."""
+    """Whether a missing value is accepted, too: ``{eq: 0, or_none: true}`` accepts 0 and no value."""
 
     def relations(self) -> dict[str, Relation]:
         """Key → the relation under it."""

@@ -88,8 +88,8 @@ class Material:
         replies: Its message after each turn.
         document: The scenario as written.
         findings: Findings of the checker about the scenario.
-        blobs: Content of each picture, array or other file that the agent left and that is no text.
-        others: What else lies there and was not opened, in words.
+        blobs: Content of each picture, array or other file that the agent left and that is not text.
+        others: Path of each further thing in the folder, which was not opened → its description.
         given_blobs: Content of each picture that the folder started with.
         stand_ins: Content of the maps that only the user has, as the grader imagines them.
         workplace: Temporary folder of this grading.

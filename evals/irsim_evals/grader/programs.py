@@ -97,7 +97,7 @@ def problems_in(texts: Mapping[str, str | None], given: Mapping[str, str], allow
     """Problems of the programs of an answer.
 
     Args:
-        texts: Files of the answer; None for what is no text.
+        texts: Files of the answer; None for a file that is not text.
         given: Files that it started with.
         allowed: ``none`` or ``runner``.
     """

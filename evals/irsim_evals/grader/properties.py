@@ -26,7 +26,7 @@ class Property:
         kind: Kind of quantity.
         key: Key of the entry that decides it.
         of: Computes it; None where the body has no such property.
-        sentence: What it is, for authors of cases.
+        sentence: Its description for authors of cases.
     """
 
     kind: Kind
@@ -140,7 +140,7 @@ def _acceleration(component: int) -> Callable[[GradedScene, GradedBody], Any]:
 
 
 def _is_noisy(_: GradedScene, body: GradedBody) -> bool | None:
-    """Noise without variances is none."""
+    """Whether the drive of a body has noise with a variance other than 0; None without a drive."""
     drive: Any = body.record.kinematics if body.kinematics else None
     return None if drive is None else bool(drive.noise and any(getattr(drive, "alpha", [1.0])))
 
@@ -183,8 +183,8 @@ PROPERTIES: dict[str, Property] = {
     "short_side": Property("size", "shape", _side(1), "Shorter side of a rectangle; 0 for a line."),
     "axis": Property("axis", "state", _axis, "Direction of the longer side of a rectangle, or the opposite one."),
     "aspect": Property("size", "shape", _aspect, "Longer side of a rectangle divided by the shorter one."),
-    "length": Property("size", "shape", _along(0), "Extent along its own heading; a disc has none."),
-    "width": Property("size", "shape", _along(1), "Extent across its own heading; a disc has none."),
+    "length": Property("size", "shape", _along(0), "Extent along its own heading; undefined for a disc."),
+    "width": Property("size", "shape", _along(1), "Extent across its own heading; undefined for a disc."),
     "area": Property("size", "shape", lambda _, body: float(body.footprint.area), "Area of its outline in m²."),
     "convex": Property(
         "flag",

@@ -44,7 +44,7 @@ def related(predicate: Any, material: Material, scene: GradedScene) -> Any:
 
 
 def unknown_words(predicate: Predicate, selections: Collection[str]) -> Iterator[str]:
-    """What is wrong with the relations of a predicate, in words."""
+    """Messages about relations of a predicate that name unknown things or need a world that the predicate lacks."""
     relations = list(_relations_in(dict(predicate)))
     if relations and predicate.subject not in ("scene", "episode"):
         yield f"{relations[0]}: an assertion about {predicate.subject} has no world whose properties it could name"
@@ -68,7 +68,7 @@ def _relations_in(value: Any) -> Iterator[Relation]:
 
 
 def _number(key: str, relation: Relation, material: Material, scene: GradedScene) -> float:
-    """What a relation comes to: where bodies differ, what holds for each of them."""
+    """The value of a relation; where bodies differ, the strictest value, so that a bound holds for each of them."""
     ranges = [_range(material, scene, selection, name) for selection, name in relation.references]
     results = [float(evaluate(relation.expression, dict(zip(relation.names, values, strict=True))))
                for values in itertools.product(*ranges)]  # fmt: skip

@@ -30,7 +30,7 @@ class OneOf:
     """Metadata of a text that is one of some words.
 
     Attributes:
-        kind: What the words are, for messages.
+        kind: Name in messages for one of the words, such as ``selection``.
         words: The words.
         own: Key of the validation context with further words, which each case defines. Without a context these cannot
             be checked.

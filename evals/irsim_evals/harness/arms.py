@@ -41,10 +41,10 @@ SKILLS = "skills"
 
 _TASK = """\
 You make and edit scenarios for irsim, a simulator of robots in a flat world. A scenario is one YAML file with the \
-keys world, robot and obstacle; the format is that of IR-SIM. Lengths are m, times s, angles rad, x points right, y up.
+keys world, robot and obstacle, in the format of IR-SIM. Lengths are m, times s, angles rad, x points right, y up.
 
 You have a folder, and tools for the files in it. Save your scenario there as scenario.yaml, unless the user names a \
-file or asks for a change of one that is there: then save that one. Nobody sees your folder until you are done. You \
+file or asks for a change of one that is there: then save that one. Your folder is not seen until you are done. You \
 are done when you answer without calling a tool: that answer is your message to the user, so say in it what you \
 assumed and what could not be done. """
 _NO_PROGRAMS = "You have no shell and cannot run programs."

@@ -186,7 +186,7 @@ def _cost_of(sample: Any, work: Work | None) -> Cost:
 
 
 def _steps(messages: Sequence[Any]) -> list[Step]:
-    """The calls of tools that were answered; those of the command line have the name of the command."""
+    """The tool calls that were answered; a call of the command line is named after its command: ``irsim run``."""
     given = {call.id: call for message in messages for call in getattr(message, "tool_calls", None) or []}
     steps = []
     for message in (one for one in messages if one.role == "tool"):

@@ -33,7 +33,7 @@ def run_command(folder: Path, line: str) -> str:
     """Run a line such as ``irsim validate scenario.yaml`` in a folder; returns what it prints.
 
     Raises:
-        FolderError: It is no such line, or the command ended with an error; the text says why.
+        FolderError: The line is not allowed, or the command ended with an error; the text says why.
     """
     try:
         words = shlex.split(line)

@@ -17,7 +17,7 @@ from irsim_evals.cases.facts import FACTS
 from irsim_evals.cases.model import Case
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.selection import select
-from irsim_evals.proof.changes import touches
+from irsim_evals.proof.changes import all_free, touches
 from irsim_evals.proof.operators import Change, Data, each_entry, entries, operator
 
 __all__ = ["ATTACKS", "EVERYWHERE", "MOTION", "attack", "is_wrong", "together"]
@@ -58,7 +58,7 @@ def is_wrong(case: Case, scenes: tuple[GradedScene, GradedScene], changed: set[t
         return True
     if touches(case, scenes, changed, case.pins):
         return True
-    return EVERYWHERE in ATTACKS[name] and changed != touches(case, scenes, changed, case.free)
+    return EVERYWHERE in ATTACKS[name] and not all_free(case, scenes, changed)
 
 
 def _states(case: Case, scene: GradedScene, item: Any, spoilt: frozenset[str], changed: set[tuple[str, str]]) -> bool:
@@ -289,9 +289,9 @@ def limits_out_of_reach(data: Data) -> Change:
     yield from together(data, change, "accelerations of 0.0001")
 
 
-@attack("arrive", "crosses", "moves", "one_way", "visits")
+@attack("arrive", "crosses", "one_way", "visits")
 def time_up(data: Data) -> Change:
-    """A time limit before which nobody, or not everybody, can have arrived."""
+    """A time limit that is too short for any robot, or for the last one, to arrive."""
     times = []
     for section, _, entry in entries(data):
         speed = (rows_of(entry.get("vel_max")) or [[1.0]])[0][0]
@@ -300,7 +300,7 @@ def time_up(data: Data) -> Change:
             times += [math.dist(a[:2], b[:2]) / speed for a, b in zip(starts, goals, strict=False)]
     if not times or not isinstance(data.get("world"), dict):
         return
-    limits = {"before anybody": 0.3 * min(times), "before the last": 0.6 * max(times)}
+    limits = {"before any robot": 0.3 * min(times), "before the last": 0.6 * max(times)}
     for what, limit in limits.items():
-        if limit > 0.1 and (what == "before anybody" or limit > 1.2 * min(times)):
+        if limit > 0.1 and (what == "before any robot" or limit > 1.2 * min(times)):
             yield f"time is up {what} can arrive", {**data, "world": {**data["world"], "time_limit": round(limit, 2)}}

@@ -1,4 +1,4 @@
-"""Attacks beside the scenario: files that nobody asked for, and replies that promise what cannot be."""
+"""Attacks beside the scenario: files that the user did not ask for, and replies that promise what cannot be."""
 
 from __future__ import annotations
 
@@ -55,5 +55,5 @@ def _with_files(answer: Answer, extra: Mapping[str, bytes], turns: int) -> Answe
     """The answer as the grader reads it from a folder in which further files lie."""
     with tempfile.TemporaryDirectory() as folder:
         write_files(Path(folder), answer.files, {**answer.blobs, **extra})
-        found = from_folder(Path(folder), turns)
-    return replace(found, name=answer.name, reply=answer.reply, replies=answer.replies)
+        extended = from_folder(Path(folder), turns)
+    return replace(extended, name=answer.name, reply=answer.reply, replies=answer.replies)

@@ -59,15 +59,15 @@ def walls_with_gaps(data: Data) -> Change:
 @attack("doorway", "plan")
 def doors_elsewhere(data: Data) -> Change:
     """A door as wide as before in another place of its wall: one piece of the wall is longer, the other shorter."""
-    found = 0
+    moved = 0
     for (i, a), (j, b) in itertools.permutations(_walls(data).items(), 2):
         across = np.array([-a[1][1], a[1][0]])
         apart = float((b[0] - a[0]) @ a[1])
         gap = apart - (a[2] + b[2]) / 2
         in_line = abs(float(b[1] @ across)) < 1e-6 and abs(float((b[0] - a[0]) @ across)) < 1e-3
-        if not in_line or not 0.3 < gap < 4.0 or found == _MAX_WALLS:
+        if not in_line or not 0.3 < gap < 4.0 or moved == _MAX_WALLS:
             continue
-        found += 1
+        moved += 1
         by = min(1.0, b[2] / 2)
         made = copy.deepcopy(data)
         items = items_of(made, "obstacle")

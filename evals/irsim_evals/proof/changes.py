@@ -14,10 +14,11 @@ from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.selection import select
 
-__all__ = ["changed_facts", "touches"]
+__all__ = ["all_free", "changed_facts", "touches"]
 
-_DERIVED = {"way": ("position", "goal"), "cover": ("position", "size", "shape", "heading", "count")}
-"""Kind of fact → kinds that it follows from, so that whoever leaves one of them free leaves it free."""
+_DERIVED = ("way", "cover")
+"""Kinds of facts that change only together with others, such as the position or the size: a case that leaves those
+free leaves these free."""
 _SAME = 1e-6
 """Difference of two numbers that counts as none."""
 _FULL_TURN = 6.2
@@ -71,7 +72,6 @@ def touches(
     touched: set[tuple[str, str]] = set()
     for pin in pins:
         kinds = {kind for fact in pin.facts for kind in GROUPS.get(fact, (fact,))}
-        kinds |= {kind for kind, of in _DERIVED.items() if kinds.intersection(of)}
         if pin.of in ("reply", "text"):
             continue
         if pin.of == "world":
@@ -81,6 +81,12 @@ def touches(
         names |= {f"+{body.name}" for body in select(scenes[1], pin.of, selectors)}
         touched |= {(name, kind) for name, kind in changed if kind in kinds and name in names}
     return touched
+
+
+def all_free(case: Case, scenes: tuple[GradedScene, GradedScene], changed: set[tuple[str, str]]) -> bool:
+    """Whether a case leaves every change free; arguments as for :func:`touches`."""
+    plain = {(name, kind) for name, kind in changed if kind not in _DERIVED}
+    return plain == touches(case, scenes, plain, case.free)
 
 
 def _matched(first: list[GradedBody], second: list[GradedBody]) -> list[tuple[GradedBody | None, GradedBody | None]]:

@@ -40,7 +40,7 @@ def idle_assertions(instance: Instance, golds: Sequence[Answer]) -> Iterator[tup
     for begin in range(0, min(len(trials), _MAX_TRIALS), _BATCH):
         jobs = [(instance, trial.answer) for trial in trials[begin : begin + _BATCH]]
         done = run_all(_broken, jobs, None, SECONDS, "grading") if left else []
-        broken = {name for found in done if not isinstance(found, LimitError) for name in found}
+        broken = {name for names in done if not isinstance(names, LimitError) for name in names}
         left = [name for name in left if name not in broken]
     yield from ((name, "unbroken") for name in left)
 

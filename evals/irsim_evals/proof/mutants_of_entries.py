@@ -49,6 +49,17 @@ def world_size(data: Data) -> Change:
 
 
 @operator
+def map_changed(data: Data) -> Change:
+    """A number of a generated map doubled: its share, its cells, its seed."""
+    for key in ("fill", "resolution", "seed"):
+        made = copy.deepcopy(data)
+        options = (made.get("world") or {}).get("obstacle_map")
+        if isinstance(options, dict) and isinstance(options.get(key), (int, float)):
+            options[key] *= 2
+            yield f"world.obstacle_map.{key} doubled", made
+
+
+@operator
 def world_dropped(data: Data) -> Change:
     """A key of the world left out."""
     for key in list(data.get("world") or {}):

@@ -26,7 +26,7 @@ from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.material import LIMITS, write_files
 from irsim_evals.grader.scene import GradedScene, open_scene
 from irsim_evals.proof.attacks import ATTACKS, is_wrong
-from irsim_evals.proof.changes import changed_facts, touches
+from irsim_evals.proof.changes import all_free, changed_facts, touches
 from irsim_evals.proof.mutants import mutants_of, mutants_of_answer, mutants_of_text
 from irsim_evals.proof.operators import Data, dump
 from irsim_evals.proof.rewrites import rewrites_of
@@ -84,7 +84,7 @@ def kind_of(trial: Trial) -> Kind | None:
         return "pinned mutant"
     if touches(case, (before, after), changed, case.pins):
         return "pinned mutant"
-    if changed and changed == touches(case, (before, after), changed, case.free):
+    if changed and all_free(case, (before, after), changed):
         return "free mutant"
     return None
 
@@ -96,7 +96,7 @@ def scene_of(text: str, blobs: tuple[tuple[str, bytes], ...], seed: int) -> Grad
 
 
 def _pictures(case: Case, answer: Answer) -> dict[str, bytes]:
-    """What maps of the answer may be made of."""
+    """Files from which maps of the answer may be made: stand-ins for missing ones, and files of the answer."""
     return {**stand_ins(case.missing), **answer.blobs}
 
 

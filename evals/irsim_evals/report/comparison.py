@@ -52,7 +52,7 @@ class CostDifference:
     """How much more or less the second set needs.
 
     Attributes:
-        unit: What is counted: calls or tokens.
+        unit: Unit of the cost: calls or tokens.
         pairs: Number of cases whose cost both know.
         before, after: Mean of a case in the first and in the second set.
         difference: Mean difference with its 95 % interval, drawn by family.
@@ -199,7 +199,7 @@ def compare(before: Sequence[Trial], after: Sequence[Trial], first: str, second:
 
 
 def _cost(unit: str, pairs: Sequence[tuple[Sequence[Trial], Sequence[Trial]]]) -> CostDifference | None:
-    """The difference in calls or tokens; None if no case has them in both sets, or none needs any."""
+    """The difference in calls or tokens; None if no case has them in both sets, or all are 0."""
     means = [(_mean_cost(unit, a), _mean_cost(unit, b), a[0].family) for a, b in pairs]
     known = [(a, b, family) for a, b, family in means if a is not None and b is not None]
     differences: dict[str, list[float]] = {}

@@ -65,9 +65,9 @@ def category_of(verdict: Verdict, ended: str = "") -> Category | None:
 
 
 def counted(categories: Iterable[Category | None]) -> dict[Category, int]:
-    """Category → how many answers it has, without those that have none."""
-    found = list(categories)
-    return {name: found.count(name) for name in CATEGORIES if name in found}
+    """Category → number of its answers; answers without a category are not counted."""
+    listed = list(categories)
+    return {name: listed.count(name) for name in CATEGORIES if name in listed}
 
 
 def failure_rows(failures: Mapping[str, Mapping[Category, int]]) -> list[list[str]]:

@@ -129,7 +129,7 @@ std::vector<char> bytes_of(const Shapes& shapes) {
   return std::move(out.bytes.bytes);
 }
 
-/// Replace the shapes of a world unless they are the same; those of its variant are shared.
+/// Replace the shapes of a world unless they are the same; shapes equal to its variant's are shared with it.
 void replace_shapes(const World& world, State& state, int w, const std::vector<char>& wanted) {
   Scene& scene = state.scenes[w];
   if (bytes_of(*scene.shapes) == wanted) return;

@@ -183,7 +183,7 @@ def _ending(brief: dict[str, Any]) -> str:
 
 
 def _whole_text(shown: RunResult, episode: ConciseRun) -> str:
-    """An episode in full, without a reason that its summary has, nor events of others if there are any of robots."""
+    """An episode in full, but no reason that its summary has, and only the events of robots if there are any."""
     robots = {robot.name for robot in shown.robots}
     about = [event for event in episode.events if robots & {event.object, event.partner}]
     reason = None if episode.reason and episode.reason in shown.summary else episode.reason
@@ -192,11 +192,11 @@ def _whole_text(shown: RunResult, episode: ConciseRun) -> str:
 
 
 def _found(whole: RunsResult) -> str:
-    """What the check found; warnings have lines of their own."""
+    """A line with the number of warnings, which have lines of their own, and the codes of the hints."""
     codes = dict.fromkeys(item.code for item in whole.warnings if item.severity == "hint")
     warned = sum(item.severity == "warning" for item in whole.warnings)
-    found = plural(warned, "warning") if warned else "no warnings"
-    return f"Check: {found}" + (f", {plural(len(codes), 'hint')} ({', '.join(codes)})" if codes else "")
+    warnings = plural(warned, "warning") if warned else "no warnings"
+    return f"Check: {warnings}" + (f", {plural(len(codes), 'hint')} ({', '.join(codes)})" if codes else "")
 
 
 def _advice_on_seeds(whole: RunsResult, given: str, seen: bool) -> str:

@@ -113,7 +113,7 @@ _CALLS = ("render_snapshot", "run_episode")
 
 
 def _next_of_valid(data: dict[str, Any], looked: bool) -> str:
-    """What to do next with a valid scenario: not what has been done, nor a run without robots."""
+    """The next steps with a valid scenario, without steps already done and without a run if there are no robots."""
     runs = data["counts"].get("robots", 0) > 0
     steps = [*["look at it with render_snapshot"] * (not looked), *["run_episode"] * runs]
     then = ", then ".join(steps) or "nothing is left to do: there are no robots to run"

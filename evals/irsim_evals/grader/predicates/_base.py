@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AnswerPredicate", "EpisodePredicate", "Observation", "OfBodies", "Predicate", "ScenePredicate", "SeedsPredicate",
-    "judged", "measured", "middle", "register", "registered", "summary", "travellers",
+    "judged", "measured", "middle", "register", "registered", "stands_at_start", "summary", "travellers",
 ]  # fmt: skip
 
 _MAX_NAMED = 4
@@ -95,6 +95,8 @@ class EpisodePredicate(Predicate):
 
     stage: ClassVar[Stage] = "behavior"
     subject: ClassVar[Literal["scene", "seeds", "episode", "answer"]] = "episode"
+    at_start: ClassVar[bool] = False
+    """Whether it may stand under ``assert`` of the case, too: it is then about an episode of no steps."""
     looks: ClassVar[bool] = False
     """Whether it needs the looks of sensors and fields of view."""
     exact: ClassVar[bool] = False
@@ -103,6 +105,11 @@ class EpisodePredicate(Predicate):
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look at one episode."""
         raise NotImplementedError
+
+
+def stands_at_start(predicate: Predicate | type[Predicate]) -> bool:
+    """Whether a predicate may stand under ``assert`` of a case."""
+    return predicate.subject != "episode" or bool(getattr(predicate, "at_start", False))
 
 
 class AnswerPredicate(Predicate):

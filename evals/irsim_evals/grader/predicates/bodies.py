@@ -111,7 +111,7 @@ class Distinct(OfBodies, ScenePredicate):
         )
 
     def _different(self, values: list[Any]) -> list[Any]:
-        """Values without those that equal an earlier one."""
+        """The values without duplicates; values within the tolerance of the property count as equal."""
         kept: list[Any] = []
         kind = PROPERTIES[self.property].kind
         for value in sorted(values, key=lambda value: (value is None, value if is_number(value) else 0)):

@@ -35,7 +35,8 @@ _MAX_QUOTED = 200
 @register("files")
 class Files(AnswerPredicate):
     """How many files of a pattern there are, whatever their names and contents, and what the text of each contains.
-    Links and empty folders count; in what is no text, or too large to be opened, nothing is found."""
+    Links and empty folders count. A file that is not text, or is too large to be opened, fulfils no condition on its
+    text."""
 
     pattern: str
     """Such as ``*.py``."""

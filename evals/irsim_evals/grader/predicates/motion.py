@@ -139,7 +139,7 @@ class StateAt(OfBodies, EpisodePredicate):
     """Accepted headings [rad]."""
     speed: Match | None = None
     """Accepted speeds along its heading, negative in reverse, and of omnidirectional drives in any direction, measured
-    over the step that ends then [m/s]. At the time 0 there is none."""
+    over the step that ends then [m/s]. At the time 0 there is no speed."""
     turn: Match | None = None
     """Accepted turn rates, positive to the left, measured over the step that ends then [rad/s]."""
     goal_distance: Match | None = None

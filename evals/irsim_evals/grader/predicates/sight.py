@@ -1,4 +1,4 @@
-"""What bodies see with their sensors or their field of view."""
+"""Things that bodies see with their sensors or their field of view."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 
 @register("sees")
 class Sees(OfBodies, EpisodePredicate):
-    """What every body of a selection sees with its sensors or its field of view: whom a beam hits, and whoever is
-    partly in the field of view, is seen. An empty selection fails."""
+    """How many things every body of a selection sees with its sensors or its field of view, when and for how long. A
+    thing is seen if a beam hits it or if it lies partly in the field of view. An empty selection fails."""
 
+    at_start = True
     looks = True
 
     what: str | None = None

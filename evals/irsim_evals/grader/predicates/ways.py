@@ -117,7 +117,7 @@ class Reachable(OfBodies, ScenePredicate):
         return judged(expected, results, wrong, "goal", said="a path for ", marks=marks)
 
     def _no_place(self, scene: GradedScene, body: GradedBody) -> str:
-        """The reason why nobody can stand at an end of the way, so that the way says nothing; empty if one can."""
+        """The reason why a body cannot stand at an end of its way, so that no search is needed; empty if it can."""
         x0, y0, x1, y1 = scene.bounds
         radius = disc_radius(body, self.size)
         for x, y in [(body.pose[0], body.pose[1]), *self._targets(body)]:
