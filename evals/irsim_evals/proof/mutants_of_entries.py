@@ -50,13 +50,13 @@ def world_size(data: Data) -> Change:
 
 @operator
 def map_changed(data: Data) -> Change:
-    """A number of a generated map doubled: its share, its cells, its seed."""
-    for key in ("fill", "resolution", "seed"):
+    """A generated map with half of its share occupied, with larger cells, or of another seed."""
+    for key, factor in (("fill", 0.5), ("resolution", 2), ("seed", 2)):
         made = copy.deepcopy(data)
         options = (made.get("world") or {}).get("obstacle_map")
         if isinstance(options, dict) and isinstance(options.get(key), (int, float)):
-            options[key] *= 2
-            yield f"world.obstacle_map.{key} doubled", made
+            options[key] *= factor
+            yield f"world.obstacle_map.{key} x {factor:g}", made
 
 
 @operator
