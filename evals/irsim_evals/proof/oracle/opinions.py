@@ -15,7 +15,7 @@ from typing import Any
 import yaml
 
 import irsim
-from irsim.options.registry import KINEMATICS
+from irsim.options.registry import BEHAVIORS, KINEMATICS
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.matching import TOLERANCES, Match
@@ -133,6 +133,16 @@ class _Look:
             raise _Unknown
         return None if thing.view.static else name
 
+    def _limits_of_its_own(self, thing: Thing) -> None:
+        """Give up on a thing whose behavior has limits of speed of its own."""
+        for key in ("behavior", "group_behavior"):
+            given = thing.entry.get(key)
+            options = given if isinstance(given, dict) else {"name": given}
+            feature = BEHAVIORS.get(str(options.get("name")))
+            own = set(feature.options.model_fields) if feature is not None else set()
+            if {"vxmax", "vmax"} & own or options.get("maxSpeed") is not None:
+                raise _Unknown
+
     def _goals(self, thing: Thing) -> list[Any]:
         """Goals that the file gives a thing, as the simulator holds them."""
         if self._drive(thing) is None:
@@ -192,6 +202,7 @@ class _Look:
         if name == "behavior" and isinstance(thing.entry.get("behavior"), dict) and "group_behavior" not in thing.entry:
             return (None if self._drive(thing) is None else thing.entry["behavior"].get("name")), "name"
         if name == "forward":
+            self._limits_of_its_own(thing)
             return (float(view.vel_max[0, 0]) if self._drive(thing) is not None else None), "speed"
         raise _Unknown
 
