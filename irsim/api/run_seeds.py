@@ -75,11 +75,11 @@ def run_seeds(
             break
     if not episodes and last is not None:
         raise last
-    left = [] if same else chosen[len(episodes) + len(crowded) :]
+    left, failed = [] if same else chosen[len(episodes) + len(crowded) :], _failed(episodes)
     return RunsResult(
         scenario=episodes[0].scenario,
-        summary=_summary(episodes, crowded, left, same),
-        failed=_failed(episodes),
+        summary=_summary(episodes, failed, crowded, left, same),
+        failed=failed,
         crowded=crowded,
         not_run=left,
         same=same,
@@ -98,8 +98,13 @@ def _failed(episodes: Sequence[RunResult]) -> dict[str, list[int]]:
     return failed
 
 
-def _summary(episodes: Sequence[RunResult], crowded: Sequence[int], left: Sequence[int], same: bool) -> str:
-    failed = _failed(episodes)
+def _summary(
+    episodes: Sequence[RunResult],
+    failed: dict[str, list[int]],
+    crowded: Sequence[int],
+    left: Sequence[int],
+    same: bool,
+) -> str:
     good = len(episodes) - sum(map(len, failed.values()))
     if same:
         return f"{episodes[0].outcome}; nothing is random, so every seed gives this run (perturb varies its start)"
