@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.table import Table
@@ -106,6 +106,16 @@ def run(
     the program of a bridge was lost.
     """
     import_user_modules(imports)
+    shared: dict[str, Any] = {
+        "steps": steps,
+        "strict": strict,
+        "policy": policy,
+        "behavior": behavior,
+        "perturb": perturb,
+        "until": until,
+        "imports": imports or (),
+        "limits": limits_for(max_objects),
+    }
     if seeds is not None:
         single = {"--seed": seed, "--save-gif": save_gif, "--show": show, "--bridge": bridge, "--record-to": record_to}
         run_all(
@@ -114,15 +124,8 @@ def run(
             {**single, "--export": export},
             json_output=json_output,
             require_success=require_success,
-            steps=steps,
-            strict=strict,
-            policy=policy,
-            behavior=behavior,
-            perturb=perturb,
-            until=until,
-            imports=imports or (),
             record=record,
-            limits=limits_for(max_objects),
+            **shared,
         )
         return
     if show:
@@ -133,21 +136,14 @@ def run(
         result = api.run(
             file,
             seed=seed,
-            steps=steps,
-            strict=strict,
-            policy=policy,
-            behavior=behavior,
-            perturb=perturb,
-            until=until,
             bridges=bridge or (),
-            imports=imports or (),
             save=save_gif,
             show=show,
             record=record if record_to is None else record_to,
             export=export or (),
             overwrite=force,
-            limits=limits_for(max_objects),
             progress=report,
+            **shared,
             connected=None if json_output else partial(typer.echo, err=True),
         )
     if json_output:
