@@ -195,6 +195,8 @@ class Case(Record):
     """Language of the prompt."""
     hard: str = ""
     """Why it is hard, for cases of level 4."""
+    made: str = ""
+    """How the prompt was made: who speaks, from which source, and what its writer had not seen."""
     prompt: str
     """The request to the agent."""
     wordings: list[str] = []
