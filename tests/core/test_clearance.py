@@ -298,3 +298,9 @@ def test_outside_a_room_is_solid() -> None:
     distance = core.Clearance(core.Terrain(FAR, [([room], [0, 0, 0])]), CELLS).distance
     assert distance[0, 0] == 0
     assert distance[30, 25] == pytest.approx(2.9, abs=1e-6)
+
+
+@pytest.mark.parametrize("pose", [[math.nan, 5, 0], [6, math.inf, 0], [6, 5, math.nan]])
+def test_things_without_a_place_are_refused(pose: list[float]) -> None:
+    with pytest.raises(ValueError, match="finite"):
+        core.Terrain(FAR, [([core.Circle(radius=0.5, center=[0, 0])], pose)])

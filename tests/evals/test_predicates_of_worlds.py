@@ -216,3 +216,11 @@ def test_a_way_is_near_to_a_middle(keys: dict[str, Any], distance: float) -> Non
     assert not seen(material, "near", {**near, "distance": {"eq": distance + 0.1, "tol": 0.05}}).passed
     if keys["what"] == "way":
         assert not seen(material, "near", {**near, "of": "stands", "distance": {"ge": 0}}).passed  # it has no goal
+
+
+@pytest.mark.parametrize(("third", "passes"), [(", goal: [5, 1, 0]", True), (", goal: [8, 1, 0]", False), ("", False)])
+def test_goals_are_apart_if_everybody_has_one(third: str, passes: bool) -> None:
+    keys = "kinematics: {name: omni}, shape: {name: circle, radius: 0.2}"
+    first = [f"{{{keys}, state: [{x}, 8, 0], goal: [{x}, 1, 0]}}" for x in (1, 9)]
+    text = f"world: {{width: 10, height: 10}}\nrobot: [{', '.join(first)}, {{{keys}, state: [5, 8, 0]{third}}}]\n"
+    assert seen(world(text), "spacing", {"of": "robots", "what": "goal", "distance": {"ge": 2}}).passed == passes

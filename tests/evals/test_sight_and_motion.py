@@ -166,3 +166,28 @@ def test_the_state_at_a_time_is_that_without_noise() -> None:
 def test_motion_is_measured_over_a_part_of_an_episode(keys: dict[str, Any], passes: bool) -> None:
     material = hall(f"{OMNI}, state: [1, 5, 0], goal: [9, 5, 0]")
     assert seen(material, "moves", {"of": "watch", **keys}, 4).passed == passes
+
+
+@pytest.mark.parametrize(
+    ("robot", "name", "keys", "passes"),
+    [
+        ("appear_time: 2", "moves", {"path": {"eq": 2, "tol": 0.2}, "fastest": 1, "farthest": {"ge": 1.8}}, True),
+        ("appear_time: 2", "moves", {"fastest": {"ge": 1.1}}, False),
+        ("appear_time: 2", "moves", {"since": 3, "path": 1}, True),
+        ("appear_time: 9", "moves", {"path": {"ge": 0}}, False),  # has not come by the end
+        ("appear_time: 2", "state_at", {"at": 3, "x": {"eq": 2, "tol": 0.2}, "speed": 1}, True),
+        ("appear_time: 2", "state_at", {"at": 1, "x": {"ge": 0}}, False),
+        ("appear_time: 2", "state_at", {"at": 1, "x": {"given": False}}, True),
+        ("appear_time: 2", "roams", {"share": 0.0, "endless": False}, True),
+        ("appear_time: 9", "roams", {"share": 0.0, "endless": False}, False),
+    ],
+)
+def test_motion_of_who_comes_later(robot: str, name: str, keys: dict[str, Any], passes: bool) -> None:
+    material = hall(f"{OMNI}, state: [1, 5, 0], goal: [9, 5, 0], {robot}")
+    assert seen(material, name, {"of": "watch", **keys}, 4).passed == passes
+
+
+def test_who_comes_and_stays_where_it_is_does_not_move() -> None:
+    late = "kinematics: {name: omni}, behavior: {name: dash}, appear_time: 1, vel_max: [0, 0]"
+    text = f"world: {{width: 12, height: 10}}\nrobot: [{{{late}, state: [1, 5, 0], goal: [9, 5, 0]}}]\n"
+    assert "moves" in failed(grade(made_up(), Answer("x", {"scenario.yaml": text})))

@@ -169,8 +169,8 @@ def check_moves(episode: GradedEpisode) -> Outcome:
         if body.static or body.behavior is None or not (body.goals or body.record.wander):
             continue
         near = body.goal is not None and math.dist(body.pose[:2], body.goal[:2]) <= body.record.goal_threshold + _MOVED
-        path = episode.positions(body.index)
-        if not near and np.hypot(*(path - path[0]).T).max() < _MOVED:
+        path = episode.path(body.index)
+        if not near and np.hypot(*(path - path[:1]).T).max(initial=0.0) < _MOVED:
             still.append((body, "stays where it is"))
     expected = "every body with a goal and a behavior moves"
     return _outcome("moves", expected, still, "all", "behavior", episode.seed)

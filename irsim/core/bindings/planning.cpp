@@ -1,4 +1,7 @@
 // Planning on maps that Python assembles.
+#include <algorithm>
+#include <cmath>
+
 #include "bindings/helpers.hpp"
 #include "planning/clearance.hpp"
 #include "planning/plan.hpp"
@@ -18,6 +21,8 @@ constexpr double kOpen = 1.0 - 1e-6;  // share of a cell that leaves out its edg
 Terrain make_terrain(const std::array<double, 4>& bounds, const std::vector<std::pair<Parts, Three>>& things) {
   Terrain terrain({bounds[0], bounds[1], bounds[2], bounds[3]});
   for (const auto& [parts, pose] : things) {
+    if (!std::all_of(pose.begin(), pose.end(), [](double value) { return std::isfinite(value); }))
+      throw nb::value_error("the pose of a thing on a terrain is finite");
     terrain.add(draw_outlines(parts, Draws({}, Stream::shape, 0)), {pose[0], pose[1], pose[2]});
   }
   terrain.build();

@@ -165,22 +165,24 @@ def judged(
 
 
 def measured(
+    said: Predicate,
     of: str,
     bodies: Sequence[GradedBody],
-    wanted: Mapping[str, tuple[Match | None, Kind]],
+    kinds: Mapping[str, Kind],
     measure: Callable[[GradedBody], Mapping[str, Any]],
     key: str,
 ) -> Observation:
     """The observation of bodies, of which there must be some, each of them with accepted values of some measures.
 
     Args:
-        of: Name of the selection.
+        said: The predicate, of which a field for each measure holds the accepted values, or None for any.
+        of: The bodies in words.
         bodies: The bodies.
-        wanted: Name of a measure → its accepted values, None for any, and its kind.
+        kinds: Name of a measure → its kind.
         measure: The values of the measures of a body.
         key: Key of an entry that decides them.
     """
-    asked = {name: (match, kind) for name, (match, kind) in wanted.items() if match is not None}
+    asked = {name: (getattr(said, name), kind) for name, kind in kinds.items() if getattr(said, name) is not None}
     expected = f"{of}: " + ", ".join(f"{name} {match.words()}" for name, (match, _) in asked.items())
     seen, wrong = [], []
     for body in bodies:

@@ -16,6 +16,16 @@ if TYPE_CHECKING:
     from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
 
+_MOTION: dict[str, Kind] = {
+    "farthest": "length", "path": "length", "dx": "length", "dy": "length", "progress": "share", "fastest": "speed",
+    "slowest": "speed", "turn": "rate",
+}  # fmt: skip
+"""Measures of how a body moves."""
+_STATE: dict[str, Kind] = {
+    "x": "length", "y": "length", "heading": "heading", "speed": "speed", "turn": "rate", "goal_distance": "length",
+}  # fmt: skip
+"""Measures of where a body is."""
+
 
 @register("arrive")
 class Arrive(OfBodies, EpisodePredicate):
@@ -83,24 +93,18 @@ class Moves(OfBodies, EpisodePredicate):
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Measure the paths."""
         first = int(np.searchsorted(episode.trace.time, episode.moment(self.since) - 1e-9))
-        wanted: dict[str, tuple[Match | None, Kind]] = {
-            "farthest": (self.farthest, "length"),
-            "path": (self.path, "length"),
-            "dx": (self.dx, "length"),
-            "dy": (self.dy, "length"),
-            "progress": (self.progress, "share"),
-            "fastest": (self.fastest, "speed"),
-            "slowest": (self.slowest, "speed"),
-            "turn": (self.turn, "rate"),
-        }
         bodies = material.bodies(episode.scene, self.of)
-        return measured(self.of, bodies, wanted, partial(_motion, episode, first), "behavior")
+        return measured(self, self.of, bodies, _MOTION, partial(_motion, episode, first), "behavior")
 
 
 def _motion(episode: GradedEpisode, first: int, body: GradedBody) -> dict[str, float | None]:
-    """Measures of the motion of a body from a row of the trace on."""
-    way = episode.positions(body.index)[first:]
-    along, everywhere, turn = (values[first:] for values in episode.velocities(body))
+    """Measures of the motion of a body from a row of the trace on, while it is in the world."""
+    way, along, everywhere, turn = (
+        values[first:][~np.isnan(values[first:]).reshape(len(values[first:]), -1).any(axis=1)]
+        for values in (episode.positions(body.index), *episode.velocities(body))
+    )
+    if not len(way):
+        return dict.fromkeys(_MOTION)
     return {
         "farthest": float(np.hypot(*(way - way[0]).T).max()),
         "path": float(np.hypot(*np.diff(way, axis=0).T).sum()),
@@ -151,28 +155,22 @@ class StateAt(OfBodies, EpisodePredicate):
         if not -1e-9 <= time <= episode.duration + 1e-9:
             return Observation(False, f"{self.of} at {time:g} s", f"the episode lasts {episode.duration:g} s")
         row = int(np.searchsorted(episode.trace.time, time + 1e-9, side="right")) - 1
-        wanted: dict[str, tuple[Match | None, Kind]] = {
-            "x": (self.x, "length"),
-            "y": (self.y, "length"),
-            "heading": (self.heading, "heading"),
-            "speed": (self.speed, "speed"),
-            "turn": (self.turn, "rate"),
-            "goal_distance": (self.goal_distance, "length"),
-        }
         bodies = material.bodies(episode.scene, self.of)
-        return measured(f"{self.of} at {time:g} s", bodies, wanted, partial(_state, episode, row), "behavior")
+        return measured(self, f"{self.of} at {time:g} s", bodies, _STATE, partial(_state, episode, row), "behavior")
 
 
 def _state(episode: GradedEpisode, row: int, body: GradedBody) -> dict[str, float | None]:
     """Where a body is at a row of the trace, and how it moves."""
     x, y, heading = episode.trace.pose[row, body.index].tolist()
+    if math.isnan(x):  # not yet in the world
+        return dict.fromkeys(_STATE)
     _, speed, turn = episode.velocities(body)
     return {
         "x": x,
         "y": y,
         "heading": heading,
-        "speed": float(speed[row - 1]) if row else None,
-        "turn": float(turn[row - 1]) if row else None,
+        "speed": float(speed[row - 1]) if row and speed[row - 1] == speed[row - 1] else None,
+        "turn": float(turn[row - 1]) if row and turn[row - 1] == turn[row - 1] else None,
         "goal_distance": None if body.goal is None else math.dist((x, y), body.goal[:2]),
     }
 
@@ -195,6 +193,9 @@ class Roams(OfBodies, EpisodePredicate):
         x0, y0, x1, y1 = episode.scene.bounds
         half = len(episode.trace) // 2
         points = episode.trace.pose[half:, [body.index for body in bodies], :2].reshape(-1, 2)
+        points = points[~np.isnan(points[:, 0])]
+        if not len(points):
+            return Observation(False, expected, f"{bodies[0].name} has not come by then", bodies[0].entry)
         right, up = points[:, 0] > (x0 + x1) / 2, points[:, 1] > (y0 + y1) / 2
         shares = [float(np.mean((right == a) & (up == b))) for a in (False, True) for b in (False, True)]
         tail = episode.trace.pose[-max(2, len(episode.trace) // 5) :]

@@ -12,7 +12,9 @@ from pydantic import model_validator
 from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, middle, register, summary
+from irsim_evals.grader.predicates._base import (
+    Observation, OfBodies, ScenePredicate, judged, middle, register, summary, travellers,
+)  # fmt: skip
 from irsim_evals.grader.predicates.ways import way_of
 from irsim_evals.grader.selection import BUILT_IN, Selection
 from irsim_evals.grader.words import OneOf
@@ -146,7 +148,7 @@ class Spacing(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure all pairs."""
-        bodies = [body for body in material.bodies(scene, self.of) if self.what != "goal" or body.goal]
+        bodies = travellers(self, material, scene) if self.what == "goal" else material.bodies(scene, self.of)
         expected = f"{self.what} of {self.of} apart: {self.distance.words()} m"
         pairs = [(self._apart(a, b), a, b) for a, b in itertools.combinations(bodies, 2)]
         if not pairs:

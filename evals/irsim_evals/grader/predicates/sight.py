@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from irsim_evals.grader.episode import GradedEpisode, Look
     from irsim_evals.grader.material import Material
 
+_SIGHT: dict[str, Kind] = {"number": "count", "beams": "count", "first": "time", "seconds": "time"}
+"""Measures of what is seen."""
+
 
 @register("sees")
 class Sees(OfBodies, EpisodePredicate):
@@ -48,21 +51,15 @@ class Sees(OfBodies, EpisodePredicate):
         time = episode.trace.time
         rows = np.flatnonzero((time >= low - 1e-9) & (time <= high + 1e-9)).tolist()
         bodies, objects = material.bodies(episode.scene, self.of), self._objects(material, episode)
-        wanted: dict[str, tuple[Match | None, Kind]] = {
-            "number": (self.number, "count"),
-            "beams": (self.beams, "count"),
-            "first": (self.first, "time"),
-            "seconds": (self.seconds, "time"),
-        }
-        if not any(match for match, _ in wanted.values()):
-            wanted["number"] = (Match(ge=1), "count")
+        asked = any(getattr(self, name) is not None for name in _SIGHT)
+        said = self if asked else self.model_copy(update={"number": Match(ge=1)})
         of = f"{self.of} see {self.what or 'anything'}" + (f" with {self.by}" if self.by else "")
         of += f" from {low:g} to {high:g} s"
         if not rows or objects == set():
             return Observation(
                 False, of, f"{self.what}: no body" if rows else f"the episode lasts {episode.duration:g} s"
             )
-        return measured(of, bodies, wanted, lambda body: self._sight(episode, body, rows, objects), "sensors")
+        return measured(said, of, bodies, _SIGHT, lambda body: self._sight(episode, body, rows, objects), "sensors")
 
     def _objects(self, material: Material, episode: GradedEpisode) -> set[int] | None:
         """Indices of what may be seen; None for everything."""
