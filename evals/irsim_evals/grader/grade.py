@@ -9,8 +9,7 @@ from __future__ import annotations
 import functools
 import tempfile
 import time
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable, Generator, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -36,28 +35,6 @@ _MOVING_TIME = 8.0
 """Time [s] after the last start within which every body with a goal and a behavior must have moved."""
 
 
-class _Stop(Exception):
-    """Nothing after this stage can be observed."""
-
-
-class _Decided(Exception):
-    """An assertion that is not soft does not hold, and no more than that is asked."""
-
-
-class _UntilDecided(list[Outcome]):
-    """Outcomes up to the first that decides the verdict."""
-
-    def append(self, outcome: Outcome) -> None:
-        super().append(outcome)
-        if not (outcome.passed or outcome.soft):
-            raise _Decided
-
-    def __iadd__(self, outcomes: Iterable[Outcome]) -> _UntilDecided:  # type: ignore[override, misc]
-        for outcome in outcomes:
-            self.append(outcome)
-        return self
-
-
 def grade(instance: Instance, answer: Answer, *, whole: bool = True) -> Verdict:
     """Grade an answer. Never raises: whatever goes wrong is a failed assertion.
 
@@ -68,56 +45,61 @@ def grade(instance: Instance, answer: Answer, *, whole: bool = True) -> Verdict:
             first that does not, and what needs episodes comes last.
     """
     begin = time.perf_counter()
-    outcomes: list[Outcome] = [] if whole else _UntilDecided()
-    built = False
+    outcomes: list[Outcome] = []
     files = dict(answer.files)
     workplace = tempfile.TemporaryDirectory(prefix="irsim-evals-", ignore_cleanup_errors=True)
     try:
-        material, built = _open(instance, answer, outcomes, Path(workplace.name), whole)
-        if built:
-            _sanity(instance, material, outcomes, moves=whole)
-        _assertions(instance, material, built, outcomes)
-        if built:
-            if not whole:
-                outcomes.append(_moves(instance, material))
-            for plan in instance.case.episodes:
-                _episodes(plan, material, outcomes, whole)
-    except _Decided:
-        pass
-    except _Stop:
-        _ungraded(instance, outcomes)
+        for outcome in _outcomes(instance, answer, Path(workplace.name), whole):
+            outcomes.append(outcome)
+            if not (whole or outcome.passed or outcome.soft):
+                break
     except Exception as error:  # a fault of the grader must not pass for one of the answer: it is named as such
-        with suppress(_Decided):
-            outcomes.append(_fault("grader", "load", error))
-            _ungraded(instance, outcomes)
+        seen = f"{type(error).__name__}: {error}"[:300]
+        outcomes.append(_said("grader", "load", False, "a grader without faults", seen))
+        outcomes += _ungraded(instance, outcomes)
     finally:
         workplace.cleanup()
-    return _verdict(instance, answer, outcomes, built, files, time.perf_counter() - begin)
+    return _verdict(instance, answer, outcomes, files, time.perf_counter() - begin)
+
+
+def _outcomes(instance: Instance, answer: Answer, workplace: Path, whole: bool) -> Iterator[Outcome]:
+    """Every stage of the funnel in turn; after a stage without which nothing can be observed, all else has failed."""
+    material = yield from _open(instance, answer, workplace, whole)
+    if material is None:
+        yield from _ungraded(instance, [])
+        return
+    built = material.scenario is not None
+    if built:
+        yield from _sanity(instance, material, moves=whole)
+    yield from _assertions(instance, material, built)
+    if built:
+        if not whole:
+            yield _moves(instance, material)
+        for plan in instance.case.episodes:
+            yield from _episodes(plan, material, whole)
 
 
 def failed_verdict(instance: Instance, answer: Answer | None, assertion: str, stage: Stage, observed: str) -> Verdict:
     """The verdict on an answer that could not be looked at."""
-    outcomes = [
-        Outcome(
-            assertion=assertion, stage=stage, passed=False, expected="an answer that can be graded", observed=observed
-        )
-    ]
-    _ungraded(instance, outcomes)
+    outcomes = [_said(assertion, stage, False, "an answer that can be graded", observed)]
+    outcomes += _ungraded(instance, outcomes)
     files = dict(answer.files) if answer is not None else {}
-    return _verdict(instance, answer or Answer(""), outcomes, False, files, 0.0)
+    return _verdict(instance, answer or Answer(""), outcomes, files, 0.0)
 
 
-def _open(
-    instance: Instance, answer: Answer, outcomes: list[Outcome], workplace: Path, step: bool
-) -> tuple[Material, bool]:
-    """Find, read and check the scenario, and make the first steps or leave them to the episodes."""
+def _open(instance: Instance, answer: Answer, workplace: Path, step: bool) -> Generator[Outcome, None, Material | None]:
+    """Find, read and check the scenario, and make the first steps or leave them to the episodes.
+
+    Returns:
+        What can be observed, without a scenario where none is needed; None if nothing can be.
+    """
     case = instance.case
     named_text = find_scenario(answer, case.files)
     if case.python != "any":
         unread = dict.fromkeys([*answer.blobs, *answer.others])
         problems = problems_in({**unread, **answer.files}, case.files, case.python)
-        _add(
-            outcomes, "only-yaml", "parse", not problems,
+        yield _said(
+            "only-yaml", "parse", not problems,
             "no program" if case.python == "none" else "programs that only run scenarios",
             "; ".join(problems[:3]) or "so it is",
         )  # fmt: skip
@@ -140,54 +122,52 @@ def _open(
     )
     if case.missing:
         made = [name for name in case.missing if name in material.names]
-        _add(
-            outcomes, "not-invented", "parse", not made, f"no file in place of the user's {', '.join(case.missing)}",
+        yield _said(
+            "not-invented", "parse", not made, f"no file in place of the user's {', '.join(case.missing)}",
             ", ".join(made) or "so it is",
         )  # fmt: skip
     if not case.scenario:
-        return material, False
+        return material
     if named_text is None:
         may = "build" not in case.disposition or len(case.disposition) > 1
         said = bool(answer.reply.strip())
-        _add(
-            outcomes, "answered", "parse", may and said, "a scenario" + (" or a reply" if may else ""),
+        yield _said(
+            "answered", "parse", may and said, "a scenario" + (" or a reply" if may else ""),
             ("a reply and no scenario" if said else "neither a scenario nor a reply") + _unread(answer),
         )  # fmt: skip
-        if not (may and said):
-            raise _Stop
-        return material, False
+        return material if may and said else None
     others = [] if _has_several(case) else rivals(answer, case.files, named_text[0])
     if others:
-        _add(
-            outcomes, "one-scenario", "parse", False, "one scenario, or one that the reply names",
+        yield _said(
+            "one-scenario", "parse", False, "one scenario, or one that the reply names",
             f"nothing says which is meant: {', '.join([named_text[0], *others][:6])}",
         )  # fmt: skip
     material.main, text = named_text
     material.texts = {**answer.files, material.main: text}
     opened = material.open(material.main)
     document, errors = opened.document, opened.errors
-    _add(
-        outcomes, "parses", "parse", not document.fatal, "a file that a safe YAML loader reads",
+    yield _said(
+        "parses", "parse", not document.fatal, "a file that a safe YAML loader reads",
         "; ".join(item.message for item in document.problems[:2]) or material.main,
     )  # fmt: skip
     if document.fatal:
-        raise _Stop
-    _add(
-        outcomes, "valid", "schema", not errors, "a scenario without errors and unknown keys",
+        return None
+    yield _said(
+        "valid", "schema", not errors, "a scenario without errors and unknown keys",
         "; ".join(f"{'.'.join(map(str, item.path))}: {item.message}" for item in errors[:3]) or "valid",
     )  # fmt: skip
     if opened.scenario is None:
-        raise _Stop
+        return None
     material.scenario, material.document, material.findings = opened.scenario, document, opened.findings
     try:
         scene = material.scene(case.seeds[0])
         if step:
             run_episode(material.scenario, case.seeds[0], _FIRST_STEPS * float(scene.world.step_time))
-        _add(outcomes, "loads", "load", True, "a world that can be stepped", f"{_FIRST_STEPS} steps")
+        yield _said("loads", "load", True, "a world that can be stepped", f"{_FIRST_STEPS} steps")
     except IrsimError as error:
-        _add(outcomes, "loads", "load", False, "a world that can be stepped", str(error).splitlines()[0])
-        raise _Stop from None
-    return material, True
+        yield _said("loads", "load", False, "a world that can be stepped", str(error).splitlines()[0])
+        return None
+    return material
 
 
 def _unread(answer: Answer) -> str:
@@ -205,16 +185,15 @@ def _has_several(case: Any) -> bool:
     return any(item.file or item.predicate.name in ("every_scenario", "comparison") for item in case.check)
 
 
-def _sanity(instance: Instance, material: Material, outcomes: list[Outcome], moves: bool) -> None:
+def _sanity(instance: Instance, material: Material, moves: bool) -> Iterator[Outcome]:
     case = instance.case
     for seed in case.seeds:
         results = check_scene(material, material.scene(seed), overlap=not case.overlap)
-        outcomes += [item for item in results if not item.passed] if seed != case.seeds[0] else results
-    if material.scenario is not None:
-        outcomes.append(check_sensors(material.scene(case.seeds[0])))
-        outcomes.append(check_goals(material.scene(case.seeds[0])))
-        if moves:
-            outcomes.append(_moves(instance, material))
+        yield from (item for item in results if seed == case.seeds[0] or not item.passed)
+    yield check_sensors(material.scene(case.seeds[0]))
+    yield check_goals(material.scene(case.seeds[0]))
+    if moves:
+        yield _moves(instance, material)
 
 
 def _moves(instance: Instance, material: Material) -> Outcome:
@@ -222,7 +201,7 @@ def _moves(instance: Instance, material: Material) -> Outcome:
     return check_moves(run_episode(material.driven_by(None), seed, _MOVING_TIME + latest_start(material.scene(seed))))
 
 
-def _assertions(instance: Instance, material: Material, built: bool, outcomes: list[Outcome]) -> None:
+def _assertions(instance: Instance, material: Material, built: bool) -> Iterator[Outcome]:
     case: Any = instance.case
     for item in case.check:
         predicate = item.predicate
@@ -230,9 +209,9 @@ def _assertions(instance: Instance, material: Material, built: bool, outcomes: l
         if (when == "built" and not built) or (when == "unbuilt" and built):
             continue
         if predicate.subject in ("scene", "episode"):
-            _observe(outcomes, item, (_in_scene(material, item, seed) for seed in case.seeds))
+            yield from _observed(item, (_in_scene(material, item, seed) for seed in case.seeds))
         else:
-            _observe(outcomes, item, [lambda item=item: item.predicate.observe(material.other(item.file))])
+            yield from _observed(item, [lambda item=item: item.predicate.observe(material.other(item.file))])
 
 
 def _in_scene(material: Material, item: Any, seed: int) -> Any:
@@ -247,7 +226,7 @@ def _in_scene(material: Material, item: Any, seed: int) -> Any:
     return look
 
 
-def _episodes(plan: Any, material: Material, outcomes: list[Outcome], whole: bool) -> None:
+def _episodes(plan: Any, material: Material, whole: bool) -> Iterator[Outcome]:
     """Run the episodes of a plan one after the other, so that memory holds only the episodes of one seed."""
     seen: dict[str, list[Observation]] = {item.id: [] for item in plan.check}
     watched = any(item.predicate.looks for item in plan.check)
@@ -262,7 +241,7 @@ def _episodes(plan: Any, material: Material, outcomes: list[Outcome], whole: boo
             look.seed = seed if look.seed is None else look.seed
             seen[item.id].append(look)
             if not (look.passed or item.soft or whole) and plan.share == 1:
-                outcomes.append(_outcome(item, look, False))
+                yield _outcome(item, look, False)
     for item in plan.check:
         looks = seen[item.id]
         bad = [look for look in looks if not look.passed]
@@ -270,7 +249,7 @@ def _episodes(plan: Any, material: Material, outcomes: list[Outcome], whole: boo
         chosen = (bad or looks)[0]
         if plan.share < 1:
             chosen.observed = f"{len(looks) - len(bad)} of {len(looks)} episodes; {chosen.observed}"
-        outcomes.append(_outcome(item, chosen, passed))
+        yield _outcome(item, chosen, passed)
 
 
 def _runs(plan: Any, material: Material, seed: int, looks: bool) -> Callable[[bool], GradedEpisode]:
@@ -292,17 +271,17 @@ def _runs(plan: Any, material: Material, seed: int, looks: bool) -> Callable[[bo
     return run
 
 
-def _observe(outcomes: list[Outcome], item: Any, looks: Iterable[Any]) -> None:
-    """Add the first observation that fails, or else the first."""
+def _observed(item: Any, looks: Iterable[Any]) -> Iterator[Outcome]:
+    """The first observation that fails, or else the first."""
     first: Observation | None = None
     for look in looks:
         observation = _guarded(look)
-        if not observation.passed:
-            outcomes.append(_outcome(item, observation, False))
-            return
         first = first or observation
+        if not observation.passed:
+            first = observation
+            break
     if first is not None:
-        outcomes.append(_outcome(item, first, True))
+        yield _outcome(item, first, first.passed)
 
 
 def _guarded(look: Any) -> Observation:
@@ -330,31 +309,23 @@ def _outcome(item: Any, observation: Observation, passed: bool) -> Outcome:
     )
 
 
-def _add(outcomes: list[Outcome], name: str, stage: Stage, passed: bool, expected: str, observed: str) -> None:
-    outcomes.append(Outcome(assertion=name, stage=stage, passed=passed, expected=expected, observed=observed))
+def _said(name: str, stage: Stage, passed: bool, expected: str, observed: str) -> Outcome:
+    return Outcome(assertion=name, stage=stage, passed=passed, expected=expected, observed=observed)
 
 
-def _fault(name: str, stage: Stage, error: Exception) -> Outcome:
-    return Outcome(
-        assertion=name,
-        stage=stage,
-        passed=False,
-        expected="a grader without faults",
-        observed=f"{type(error).__name__}: {error}"[:300],
-    )
-
-
-def _ungraded(instance: Instance, outcomes: list[Outcome]) -> None:
-    """Count every assertion that was not reached as failed."""
+def _ungraded(instance: Instance, outcomes: list[Outcome]) -> list[Outcome]:
+    """Every assertion that was not reached, as failed."""
     done = {outcome.assertion for outcome in outcomes}
     case: Any = instance.case
-    for item in [*case.check, *(one for plan in case.episodes for one in plan.check)]:
-        if item.id not in done and item.when != "unbuilt":
-            outcomes.append(_outcome(item, Observation(False, "a scenario to look at", NOT_REACHED), False))
+    return [
+        _outcome(item, Observation(False, "a scenario to look at", NOT_REACHED), False)
+        for item in [*case.check, *(one for plan in case.episodes for one in plan.check)]
+        if item.id not in done and item.when != "unbuilt"
+    ]
 
 
 def _verdict(
-    instance: Instance, answer: Answer, outcomes: list[Outcome], built: bool, files: dict[str, str], seconds: float
+    instance: Instance, answer: Answer, outcomes: list[Outcome], files: dict[str, str], seconds: float
 ) -> Verdict:
     hard = [item for item in outcomes if not item.soft]
     weight = sum(item.weight for item in outcomes)
@@ -363,6 +334,7 @@ def _verdict(
         if any(not item.passed for item in hard if item.stage == stage):
             reached = stage
             break
+    built = any(item.assertion == "loads" and item.passed for item in outcomes)
     asks = "?" in answer.reply.replace("?`", "")
     return Verdict(
         case=instance.case.id,

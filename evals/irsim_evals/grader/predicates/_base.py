@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict
 
 from irsim.common.lazy import module_names
 from irsim_evals.grader.body import GradedBody
-from irsim_evals.grader.matching import Kind, Match, matches, show
+from irsim_evals.grader.matching import Kind, matches, show
 from irsim_evals.grader.outcome import Mark, Stage
 from irsim_evals.grader.selection import Selection
 

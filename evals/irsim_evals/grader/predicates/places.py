@@ -13,7 +13,14 @@ from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import (
-    Observation, OfBodies, ScenePredicate, judged, middle, register, summary, travellers,
+    Observation,
+    OfBodies,
+    ScenePredicate,
+    judged,
+    middle,
+    register,
+    summary,
+    travellers,
 )  # fmt: skip
 from irsim_evals.grader.predicates.ways import way_of
 from irsim_evals.grader.selection import BUILT_IN, Selection
