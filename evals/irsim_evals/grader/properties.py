@@ -17,6 +17,8 @@ from irsim_evals.grader.words import OneOf
 
 __all__ = ["PROPERTIES", "Property", "PropertyName", "value_of", "yaml_path"]
 
+_Value = Callable[[GradedScene, GradedBody], Any]
+
 
 @dataclass(frozen=True)
 class Property:
@@ -31,34 +33,21 @@ class Property:
 
     kind: Kind
     key: str
-    of: Callable[[GradedScene, GradedBody], Any]
+    of: _Value
     sentence: str
 
 
-def _goal(component: int) -> Callable[[GradedScene, GradedBody], Any]:
-    def of(_: GradedScene, body: GradedBody) -> float | None:
-        goal = body.goal
-        return None if goal is None or len(goal) <= component else goal[component]
-
-    return of
+def _goal(component: int) -> _Value:
+    return lambda _, body: body.goal[component] if body.goal and len(body.goal) > component else None
 
 
-def _goal_offset(component: int) -> Callable[[GradedScene, GradedBody], Any]:
-    def of(_: GradedScene, body: GradedBody) -> float | None:
-        return None if body.goal is None else body.goal[component] - body.pose[component]
-
-    return of
+def _goal_offset(component: int) -> _Value:
+    return lambda _, body: None if body.goal is None else body.goal[component] - body.pose[component]
 
 
-def _side(which: int) -> Callable[[GradedScene, GradedBody], Any]:
-    """The longer (0) or shorter (1) side of a rectangular body."""
-
-    def of(_: GradedScene, body: GradedBody) -> float | None:
-        if body.box is None:
-            return None
-        return (body.box.length, body.box.width)[which]
-
-    return of
+def _side(name: str) -> _Value:
+    """The side of a rectangular body that has the name."""
+    return lambda _, body: getattr(body.box, name, None)
 
 
 def _axis(_: GradedScene, body: GradedBody) -> float | None:
@@ -73,13 +62,9 @@ def _aspect(_: GradedScene, body: GradedBody) -> float | None:
     return body.box.length / body.box.width if body.box.width > 0 else math.inf
 
 
-def _along(which: int) -> Callable[[GradedScene, GradedBody], Any]:
+def _along(which: int) -> _Value:
     """Extent of a body that is not a disc along (0) or across (1) its own heading."""
-
-    def of(_: GradedScene, body: GradedBody) -> float | None:
-        return None if body.radius is not None else float(body.extent[which])
-
-    return of
+    return lambda _, body: None if body.radius is not None else float(body.extent[which])
 
 
 def _way(_: GradedScene, body: GradedBody) -> float | None:
@@ -104,15 +89,15 @@ def _share(scene: GradedScene, point: Sequence[float], component: int) -> float:
     return (point[component] - low) / (high - low)
 
 
-def _of_world(component: int) -> Callable[[GradedScene, GradedBody], Any]:
+def _of_world(component: int) -> _Value:
     return lambda scene, body: _share(scene, body.position, component)
 
 
-def _goal_of_world(component: int) -> Callable[[GradedScene, GradedBody], Any]:
+def _goal_of_world(component: int) -> _Value:
     return lambda scene, body: None if body.goal is None else _share(scene, body.goal, component)
 
 
-def _range(name: str) -> Callable[[GradedScene, GradedBody], Any]:
+def _range(name: str) -> _Value:
     """The greatest value to one side of what a drive controls."""
     return lambda _, body: body.ranges.get(name)
 
@@ -123,18 +108,13 @@ def _avoids(scene: GradedScene, body: GradedBody) -> bool:
     return body.avoided in roles
 
 
-def _acceleration(component: int) -> Callable[[GradedScene, GradedBody], Any]:
+def _acceleration(component: int) -> _Value:
     """The limit of a control's change; None without a limit, and of drives that have no such control."""
 
     def of(_: GradedScene, body: GradedBody) -> float | None:
-        limits = body.limits["acce"]
-        if (
-            body.kinematics is None
-            or not limits
-            or (component < 0 and not getattr(body.record.kinematics, "turns", False))
-        ):
-            return None
-        return limits[component] if limits[component] < math.inf else None
+        limits = body.limits["acce"] if body.kinematics is not None else []
+        has = component == 0 or getattr(body.record.kinematics, "turns", False)
+        return limits[component] if limits and has and limits[component] < math.inf else None
 
     return of
 
@@ -179,8 +159,8 @@ PROPERTIES: dict[str, Property] = {
     "wheelbase": Property("size", "kinematics", _wheelbase, "Distance of a car's axles."),
     "shape": Property("name", "shape", lambda _, body: body.shape, "Such as ``square`` or ``line``."),
     "radius": Property("size", "shape", lambda _, body: body.radius, "Radius of a disc."),
-    "long_side": Property("size", "shape", _side(0), "Longer side of a rectangle; length of a line."),
-    "short_side": Property("size", "shape", _side(1), "Shorter side of a rectangle; 0 for a line."),
+    "long_side": Property("size", "shape", _side("length"), "Longer side of a rectangle; length of a line."),
+    "short_side": Property("size", "shape", _side("width"), "Shorter side of a rectangle; 0 for a line."),
     "axis": Property("axis", "state", _axis, "Direction of the longer side of a rectangle, or the opposite one."),
     "aspect": Property("size", "shape", _aspect, "Longer side of a rectangle divided by the shorter one."),
     "length": Property("size", "shape", _along(0), "Extent along its own heading; undefined for a disc."),

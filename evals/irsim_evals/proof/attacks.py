@@ -42,6 +42,19 @@ def attack(*spoils: str) -> Callable[[Callable[[Data], Change]], Callable[[Data]
     return register
 
 
+def attack_on_entries(what: str, *spoils: str) -> Callable[[Callable[[Data], Any]], Callable[[Data], Change]]:
+    """Register a change of an entry, False where it does not apply, as an attack on all entries and on each alone."""
+
+    def register(change: Callable[[Data], Any]) -> Callable[[Data], Change]:
+        def of(data: Data) -> Change:
+            yield from together(data, change, what)
+
+        of.__name__ = change.__name__
+        return attack(*spoils)(of)
+
+    return register
+
+
 def is_wrong(case: Case, scenes: tuple[GradedScene, GradedScene], changed: set[tuple[str, str]], name: str) -> bool:
     """Whether an attack has spoilt something that a case asks for.
 
@@ -104,17 +117,13 @@ def _moves(entry: Data) -> bool:
     return "kinematics" in entry and bool(entry.get("behavior")) and not entry.get("static")
 
 
-@attack(EVERYWHERE)
-def passable_bodies(data: Data) -> Change:
+@attack_on_entries("passable", EVERYWHERE)
+def passable_bodies(entry: Data) -> Any:
     """Bodies that others pass through."""
-
-    def change(entry: Data) -> Any:
-        if entry.get("unobstructed"):
-            return False
-        entry["unobstructed"] = True
-        return True
-
-    yield from together(data, change, "passable")
+    if entry.get("unobstructed"):
+        return False
+    entry["unobstructed"] = True
+    return True
 
 
 @attack(EVERYWHERE)
@@ -131,49 +140,37 @@ def late_bodies(data: Data) -> Change:
         yield from together(data, change, f"{key} 1000")
 
 
-@attack("avoids")
-def dash_instead(data: Data) -> Change:
+@attack_on_entries("dash", "avoids")
+def dash_instead(entry: Data) -> Any:
     """Straight on instead of a behavior that plans or avoids."""
-
-    def change(entry: Data) -> Any:
-        given = entry.get("behavior")
-        if not isinstance(given, dict) or given.get("name") == "dash" or given.get("wander"):
-            return False
-        entry["behavior"] = {"name": "dash", **{key: given[key] for key in ("loop",) if key in given}}
-        return True
-
-    yield from together(data, change, "dash")
+    given = entry.get("behavior")
+    if not isinstance(given, dict) or given.get("name") == "dash" or given.get("wander"):
+        return False
+    entry["behavior"] = {"name": "dash", **{key: given[key] for key in ("loop",) if key in given}}
+    return True
 
 
-@attack(*MOTION, "goal_x", "goal_y", "goal_dx", "goal_dy", "goal_distance", "ways", "line_of_sight")
-def goal_at_start(data: Data) -> Change:
+@attack_on_entries(
+    "goal at the start", *MOTION, "goal_x", "goal_y", "goal_dx", "goal_dy", "goal_distance", "ways", "line_of_sight"
+)
+def goal_at_start(entry: Data) -> Any:
     """Goals where the bodies start, so that they have arrived at once."""
-
-    def change(entry: Data) -> Any:
-        rows = rows_of(entry.get("state"))
-        if not rows or not rows_of(entry.get("goal")) or not _moves(entry):
-            return False
-        places = [row[:2] for row in rows]
-        entry["goal"] = places if entry["state"] is rows else places[0]
-        return True
-
-    yield from together(data, change, "goal at the start")
+    rows = rows_of(entry.get("state"))
+    if not rows or not rows_of(entry.get("goal")) or not _moves(entry):
+        return False
+    places = [row[:2] for row in rows]
+    entry["goal"] = places if entry["state"] is rows else places[0]
+    return True
 
 
-@attack(EVERYWHERE)
-def arrived_at_once(data: Data) -> Change:
+@attack_on_entries("arrived at the start", EVERYWHERE)
+def arrived_at_once(entry: Data) -> Any:
     """Goals that count as reached from where the bodies start."""
-
-    def change(entry: Data) -> Any:
-        starts, goals = rows_of(entry.get("state")), rows_of(entry.get("goal"))
-        if not starts or len(starts) != len(goals) or not _moves(entry):
-            return False
-        entry["goal_threshold"] = round(
-            max(math.dist(a[:2], b[:2]) for a, b in zip(starts, goals, strict=True)) + 0.2, 2
-        )
-        return True
-
-    yield from together(data, change, "arrived at the start")
+    starts, goals = rows_of(entry.get("state")), rows_of(entry.get("goal"))
+    if not starts or len(starts) != len(goals) or not _moves(entry):
+        return False
+    entry["goal_threshold"] = round(max(math.dist(a[:2], b[:2]) for a, b in zip(starts, goals, strict=True)) + 0.2, 2)
+    return True
 
 
 def _route(entry: Data) -> list[Any]:
@@ -184,31 +181,23 @@ def _route(entry: Data) -> list[Any]:
     return route if entry.get("number", 1) == 1 and len(rows_of(route)) > 1 else []
 
 
-@attack("visits", "one_way")
-def route_reversed(data: Data) -> Change:
+@attack_on_entries("waypoints in the opposite order", "visits", "one_way")
+def route_reversed(entry: Data) -> Any:
     """Waypoints in the opposite order; a round keeps its end."""
-
-    def change(entry: Data) -> Any:
-        route, starts = _route(entry), rows_of(entry.get("state"))
-        if not route or not starts:
-            return False
-        around = math.dist(route[-1][:2], starts[0][:2]) < 0.5
-        route[:] = [*route[-2::-1], route[-1]] if around else route[::-1]
-        return True
-
-    yield from together(data, change, "waypoints in the opposite order")
+    route, starts = _route(entry), rows_of(entry.get("state"))
+    if not route or not starts:
+        return False
+    around = math.dist(route[-1][:2], starts[0][:2]) < 0.5
+    route[:] = [*route[-2::-1], route[-1]] if around else route[::-1]
+    return True
 
 
-@attack("visits", "one_way")
-def route_cut(data: Data) -> Change:
+@attack_on_entries("only the last waypoint", "visits", "one_way")
+def route_cut(entry: Data) -> Any:
     """Only the last waypoint."""
-
-    def change(entry: Data) -> Any:
-        route = _route(entry)
-        route[:] = route[-1:]
-        return bool(route)
-
-    yield from together(data, change, "only the last waypoint")
+    route = _route(entry)
+    route[:] = route[-1:]
+    return bool(route)
 
 
 def _sensors(entry: Data) -> Iterator[Data]:
@@ -229,30 +218,22 @@ def sensors_turned(data: Data) -> Change:
         yield from together(data, change, f"a sensor {what}")
 
 
-@attack("sees", "explores")
-def sensors_blind(data: Data) -> Change:
+@attack_on_entries("a sensor sees only what is far", "sees", "explores")
+def sensors_blind(entry: Data) -> Any:
     """Sensors that see nothing but what is farthest."""
-
-    def change(entry: Data) -> Any:
-        seen = [one for one in _sensors(entry) if _is_number(one.get("range_max"))]
-        for sensor in seen:
-            sensor["range_min"] = 0.95 * sensor["range_max"]
-        return bool(seen)
-
-    yield from together(data, change, "a sensor sees only what is far")
+    seen = [one for one in _sensors(entry) if _is_number(one.get("range_max"))]
+    for sensor in seen:
+        sensor["range_min"] = 0.95 * sensor["range_max"]
+    return bool(seen)
 
 
-@attack(*MOTION)
-def static_movers(data: Data) -> Change:
+@attack_on_entries("static", *MOTION)
+def static_movers(entry: Data) -> Any:
     """Bodies that keep their drive, goal and behavior, and are fixed."""
-
-    def change(entry: Data) -> Any:
-        if not _moves(entry):
-            return False
-        entry["static"] = True
-        return True
-
-    yield from together(data, change, "static")
+    if not _moves(entry):
+        return False
+    entry["static"] = True
+    return True
 
 
 @attack("forward", "backward", "turn", "turn_left", "turn_right", "steer", "steer_left", "steer_right")
@@ -276,17 +257,31 @@ def limits_elsewhere(data: Data) -> Change:
     yield from together(data, exchanged, "forward and backward exchanged")
 
 
-@attack(*MOTION)
-def limits_out_of_reach(data: Data) -> Change:
+@attack_on_entries("psi_max halved", "steer", "steer_left", "steer_right")
+def steering_capped(entry: Data) -> Any:
+    """A steering angle that the drive caps, whatever the limits of the body say."""
+    drive, most = entry.get("kinematics"), rows_of(entry.get("vel_max"))
+    if not isinstance(drive, dict) or drive.get("name") != "acker" or not most:
+        return False
+    drive["psi_max"] = drive.get("psi_max", most[0][1]) / 2
+    return True
+
+
+@attack_on_entries("only one round", "roams", "loop", "wander")
+def one_round(entry: Data) -> Any:
+    """A round or a walk that ends where it would go on for ever."""
+    given = entry.get("behavior")
+    dropped = [given.pop(key, False) for key in ("loop", "wander")] if isinstance(given, dict) else []
+    return any(dropped)
+
+
+@attack_on_entries("accelerations of 0.0001", *MOTION)
+def limits_out_of_reach(entry: Data) -> Any:
     """Top speeds that the accelerations do not let a body come to."""
-
-    def change(entry: Data) -> Any:
-        if not rows_of(entry.get("vel_max")) or not _moves(entry):
-            return False
-        entry["acce"] = [1e-4 for _ in rows_of(entry["vel_max"])[0]]
-        return True
-
-    yield from together(data, change, "accelerations of 0.0001")
+    if not rows_of(entry.get("vel_max")) or not _moves(entry):
+        return False
+    entry["acce"] = [1e-4 for _ in rows_of(entry["vel_max"])[0]]
+    return True
 
 
 @attack("arrive", "crosses", "one_way", "visits")
