@@ -101,7 +101,7 @@ def world(text: str, reply: str = "", **selectors: dict[str, Any]) -> Material:
     """An answer that is one scenario."""
     scenario = read(load_text(text)).scenario
     chosen = {name: Selector.model_validate(value) for name, value in selectors.items()}
-    return Material(scenario=scenario, selectors=chosen, texts={"scenario.yaml": text}, reply=reply)
+    return Material(Answer("x", {"scenario.yaml": text}, reply), scenario, chosen)
 
 
 def episode(material: Material, seconds: float) -> GradedEpisode:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from irsim_evals.grader.artefact import Call
+from irsim_evals.grader.artefact import Answer, Call
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.grader.material import Material
 from tests.evals.conftest import RIGHT, failed, made_up, seen, world
@@ -112,19 +112,19 @@ LOG = log(
     ],
 )
 def test_calls_are_counted(keys: dict[str, Any], passes: bool) -> None:
-    material = Material(scenario=None, selectors={}, texts={}, calls=LOG)
+    material = Material(Answer("x", calls=LOG))
     assert seen(material, "calls", keys).passed == passes
 
 
 def test_without_a_write_nothing_comes_after_it() -> None:
-    material = Material(scenario=None, selectors={}, texts={}, calls=log("lookup", "write_scenario!"))
+    material = Material(Answer("x", calls=log("lookup", "write_scenario!")))
     assert not seen(material, "calls", {"when": "after_last_write"}).passed
     assert seen(material, "calls", {"when": "before_last_write", "number": 2}).passed
 
 
 @pytest.mark.parametrize("keys", [{}, {"number": 0}, {"tool": "run_episode", "number": 0}])
 def test_without_a_log_nothing_is_known_of_calls(keys: dict[str, Any]) -> None:
-    observation = seen(Material(scenario=None, selectors={}, texts={}), "calls", keys)
+    observation = seen(Material(Answer("x")), "calls", keys)
     assert not observation.passed
     assert "--log-calls" in observation.observed
 

@@ -57,8 +57,9 @@ COMMAND = """
 OTHER_SEEDS = 'irsim.benchmark(["a.yaml", "b.yaml"], "rvo", seeds=range(5, 10), steps=40)'
 
 
-def left(files: dict[str, str], given: dict[str, str] | None = None, reply: str = "", **more: Path) -> Material:
-    return Material(scenario=None, selectors={}, texts=files, given=given or {}, reply=reply, **more)
+def left(files: dict[str, str], given: dict[str, str] | None = None, reply: str = "", **more: Any) -> Material:
+    trusted = more.pop("trusted_folder", None)
+    return Material(Answer("x", files, reply, trusted_folder=trusted), given=given or {}, **more)
 
 
 def scene_text(number: int, behavior: str = "dash", size: int = 10, speed: int = 1) -> str:
@@ -331,7 +332,7 @@ def test_an_edit_may_be_of_one_number_of_a_vector(new: str, only: list[str], obs
     before = "robot: {kinematics: {name: diff}, vel_max: [1, 1], waypoints: [[5, 2], [6, 6]]}\n"
     ways = "" if "waypoints" in new else ", waypoints: [[5, 2], [6, 6]]"
     after = f"robot: {{kinematics: {{name: diff}}, {new}{ways}}}\n"
-    material = Material(None, {}, {"scenario.yaml": after}, "scenario.yaml", {"scenario.yaml": before})
+    material = Material(Answer("x", {"scenario.yaml": after}), main="scenario.yaml", given={"scenario.yaml": before})
     observation = seen(material, "edits", {"only": only})
     assert observation.passed == (observed == "")
     assert observed in observation.observed

@@ -10,6 +10,7 @@ import functools
 import tempfile
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -104,21 +105,14 @@ def _open(instance: Instance, answer: Answer, workplace: Path, step: bool) -> Ge
             "; ".join(problems[:3]) or "so it is",
         )  # fmt: skip
     material = Material(
-        scenario=None,
+        answer,
         selectors=case.select,
         passable=case.passable,
         late=case.late,
-        texts=answer.files,
         given=case.files,
-        reply=answer.reply,
-        replies=list(answer.replies),
-        blobs=answer.blobs,
-        others=answer.others,
         given_blobs=given_pictures(instance),
         stand_ins=stand_ins(case.missing),
         workplace=workplace,
-        trusted_folder=answer.trusted_folder,
-        calls=answer.calls,
     )
     if case.missing:
         made = [name for name in case.missing if name in material.names]
@@ -143,7 +137,7 @@ def _open(instance: Instance, answer: Answer, workplace: Path, step: bool) -> Ge
             f"nothing says which is meant: {', '.join([named_text[0], *others][:6])}",
         )  # fmt: skip
     material.main, text = named_text
-    material.texts = {**answer.files, material.main: text}
+    material.answer = replace(answer, files={**answer.files, material.main: text})
     opened = material.open(material.main)
     document, errors = opened.document, opened.errors
     yield _said(

@@ -20,7 +20,7 @@ from irsim_evals.grader.selection import Selector, select
 if TYPE_CHECKING:
     from irsim.diagnostics.diagnostic import Diagnostic
     from irsim.scenario.resolve.resolved import ResolvedScenario
-    from irsim_evals.grader.artefact import Call
+    from irsim_evals.grader.artefact import Answer
 
 __all__ = ["LIMITS", "Material", "Opened", "open_text", "with_speeds", "write_files"]
 
@@ -77,43 +77,31 @@ class Material:
     """An answer, opened.
 
     Attributes:
+        answer: What the agent left; a scenario that stands only in its reply is a file, too.
         scenario: The scenario that the simulator has read; None if there is no scenario to read.
         selectors: Selections of the case.
         passable: Selections of bodies that others may pass through.
         late: Selections of bodies that never move and may come into the world late.
-        texts: Text of each file that the agent left, by its path in the folder.
         main: Path of the file that holds the scenario.
         given: Text of each file that the folder started with.
-        reply: Last message of the agent.
-        replies: Its message after each turn.
         document: The scenario as written.
         findings: Findings of the checker about the scenario.
-        blobs: Content of each picture, array or other file that the agent left and that is not text.
-        others: Path of each further thing in the folder, which was not opened → its description.
         given_blobs: Content of each picture that the folder started with.
         stand_ins: Content of the maps that only the user has, as the grader imagines them.
         workplace: Temporary folder of this grading.
-        trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
-        calls: Tools that the agent called, in their order; None if there is no log of them.
         beside: Path of another scenario of the answer → the same for assertions about that one.
     """
 
-    scenario: ResolvedScenario | None
-    selectors: Mapping[str, Selector]
-    texts: Mapping[str, str]
+    answer: Answer
+    scenario: ResolvedScenario | None = None
+    selectors: Mapping[str, Selector] = field(default_factory=dict)
     main: str | None = None
     given: Mapping[str, str] = field(default_factory=dict)
-    reply: str = ""
-    replies: list[str] = field(default_factory=list)
     document: Document | None = None
     findings: Sequence[Diagnostic] = ()
-    blobs: Mapping[str, bytes] = field(default_factory=dict)
-    others: Mapping[str, str] = field(default_factory=dict)
     given_blobs: Mapping[str, bytes] = field(default_factory=dict)
     stand_ins: Mapping[str, bytes] = field(default_factory=dict)
     workplace: Path | None = None
-    trusted_folder: Path | None = None
-    calls: tuple[Call, ...] | None = None
     passable: Sequence[str] = ()
     late: Sequence[str] = ()
     beside: dict[str, Material] = field(default_factory=dict, repr=False)
@@ -157,20 +145,20 @@ class Material:
     @property
     def names(self) -> list[str]:
         """Paths of everything that the agent left and that was not given like this, its last message apart."""
-        texts = [name for name, text in self.texts.items() if self.given.get(name) != text]
-        blobs = [name for name, content in self.blobs.items() if self.given_blobs.get(name) != content]
-        return [*texts, *blobs, *self.others]
+        texts = [name for name, text in self.answer.files.items() if self.given.get(name) != text]
+        blobs = [name for name, content in self.answer.blobs.items() if self.given_blobs.get(name) != content]
+        return [*texts, *blobs, *self.answer.others]
 
     def folder(self) -> Path:
         """A folder with a copy of every file of the answer."""
         if self.workplace is None:
             raise LookupError("there is no folder to work in")
-        write_files(self.workplace, self.texts, {**self.stand_ins, **self.blobs})
+        write_files(self.workplace, self.answer.files, {**self.stand_ins, **self.answer.blobs})
         return self.workplace
 
     def open(self, file: str) -> Opened:
         """Read a scenario of the answer. Maps beside it are read from a copy of the answer."""
-        return open_text(self.texts[file], self.folder() if self.blobs or self.stand_ins else None, file)
+        return open_text(self.answer.files[file], self.folder() if self.answer.blobs or self.stand_ins else None, file)
 
     def other(self, file: str) -> Material:
         """The material for assertions about another scenario of the answer, opened once; itself for its own file.
@@ -181,7 +169,7 @@ class Material:
         if not file or (file == self.main and self.scenario is not None):
             return self
         if file not in self.beside:
-            if file not in self.texts:
+            if file not in self.answer.files:
                 raise LookupError(f"there is no file {file}")
             opened = self.open(file)
             if opened.scenario is None:

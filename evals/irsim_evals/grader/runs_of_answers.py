@@ -74,8 +74,8 @@ def runs_of(material: Material, behaviors: set[str], seconds: float) -> Runs | s
             said = "\n".join([done.text, *written])
             return Runs(name, counted, f"{said}\n{_code(programs[name])}" if said.strip() else "")
         idle = idle or f"{name} runs no episode under {' or '.join(sorted(behaviors))}"
-    others = {name: text for name, text in material.texts.items() if name not in (*material.given, *programs)}
-    words = _HIDDEN.sub("", "\n".join([*others.values(), material.reply]))
+    others = {name: text for name, text in material.answer.files.items() if name not in (*material.given, *programs)}
+    words = _HIDDEN.sub("", "\n".join([*others.values(), material.answer.reply]))
     started = list(_commanded(material, words))
     if idle and not started:
         return idle
@@ -84,10 +84,10 @@ def runs_of(material: Material, behaviors: set[str], seconds: float) -> Runs | s
 
 def _programs(material: Material) -> dict[str, str]:
     """The programs by name; those in the reply are written into the folder where there are no others."""
-    programs = {n: t for n, t in material.texts.items() if n.endswith(".py") and n not in material.given}
+    programs = {n: t for n, t in material.answer.files.items() if n.endswith(".py") and n not in material.given}
     if programs:
         return programs
-    for number, text in enumerate(_PYTHON.findall(material.reply)):
+    for number, text in enumerate(_PYTHON.findall(material.answer.reply)):
         if "irsim" in text and not problems_of(text):
             programs[f"reply_{number}.py"] = text
             (material.folder() / f"reply_{number}.py").write_text(text, encoding="utf-8", errors="replace")
@@ -138,7 +138,7 @@ def _commanded(material: Material, text: str) -> Iterator[Started]:
             steps = int(options["--steps"]) if "--steps" in options else None
         except (IrsimError, ValueError):
             continue
-        for file in _expanded(files, material.texts):
+        for file in _expanded(files, material.answer.files):
             for name in names:
                 used = (name,) if name else _written(material, file)
                 yield from (Started(file, used, seed, steps) for seed in seeds)

@@ -40,9 +40,9 @@ class Calls(AnswerPredicate):
         expected += f": {self.number.words()}" if self.number is not None else ""
         expected += f", refused: {self.refused.words()}" if self.refused is not None else ""
         expected += f", in the order {', '.join(self.order)}" if self.order else ""
-        if material.calls is None:
+        if material.answer.calls is None:
             return Observation(False, expected, "there is no log of calls, as irsim-mcp --log-calls writes it")
-        log = self._part(material.calls)
+        log = self._part(material.answer.calls)
         counted = [call for call in log if fnmatchcase(call.tool, self.tool)]
         refused = sum(call.error for call in counted)
         passed = self.number is None or matches(self.number, len(counted), "count")

@@ -55,9 +55,9 @@ class Files(AnswerPredicate):
         names = _new_files(material, self.pattern)
         wrong = []
         for name in names:
-            text = material.texts.get(name)
+            text = material.answer.files.get(name)
             if text is None and (self.contain or self.lack or self.has):
-                wrong.append(f"{name} is {material.others.get(name, 'no text')}")
+                wrong.append(f"{name} is {material.answer.others.get(name, 'no text')}")
                 continue
             wrong += [f"{name} lacks /{p}/" for p in self.contain if not re.search(p, text or "")]
             wrong += [f"{name} contains /{p}/" for p in self.lack if re.search(p, text or "")]
@@ -130,7 +130,7 @@ class Edits(AnswerPredicate):
 
     def observe(self, material: Material) -> Observation:
         """Compare the files."""
-        before, after = material.given.get(self.base), material.texts.get(self.file or material.main or "")
+        before, after = material.given.get(self.base), material.answer.files.get(self.file or material.main or "")
         expected = self._words()
         if before is None or after is None:
             return Observation(False, expected, "there is nothing to compare")
@@ -244,7 +244,7 @@ class Program(AnswerPredicate):
         expected = f"{self.pattern}: {self.number.words()}" + "".join(f", prints /{p}/" for p in self.prints)
         if not matches(self.number, len(names), "count"):
             return Observation(False, expected, f"{len(names)}: {', '.join(names[:6])}")
-        problems = problems_in({name: material.texts.get(name) for name in names}, {}, "runner")
+        problems = problems_in({name: material.answer.files.get(name) for name in names}, {}, "runner")
         if problems:
             return Observation(False, expected, "; ".join(problems[:3]))
         printed = ""
@@ -273,13 +273,13 @@ class Command(AnswerPredicate):
     def observe(self, material: Material) -> Observation:
         """Run it."""
         expected = f"`{self.run}` succeeds" + (f" and prints /{self.prints}/" if self.prints is not None else "")
-        if material.trusted_folder is None:
+        if material.answer.trusted_folder is None:
             return Observation(False, expected, "it was not run; grade with --run-programs if you trust the answer")
         words = shlex.split(self.run)
         command = [sys.executable, *words[1:]] if words[0] == "python" else [sys.executable, "-m", *words]
         try:
             done = subprocess.run(
-                command, cwd=material.trusted_folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                command, cwd=material.answer.trusted_folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
                 errors="replace", check=False, timeout=_SECONDS,
             )  # fmt: skip
         except subprocess.TimeoutExpired:

@@ -149,9 +149,9 @@ class Says(AnswerPredicate):
 
     def observe(self, material: Material) -> Observation:
         """Search the reply."""
-        reply = material.reply
+        reply = material.answer.reply
         if self.turn is not None:
-            reply = material.replies[self.turn - 1] if self.turn <= len(material.replies) else ""
+            reply = material.answer.replies[self.turn - 1] if self.turn <= len(material.answer.replies) else ""
         text = re.sub(r"\s+", " ", reply)
 
         def occurs(pattern: str) -> bool:
@@ -205,7 +205,7 @@ class States(AnswerPredicate):
             return Observation(
                 False, expected, f"{bodies[0].name} has no {self.property}", yaml_path(bodies[0], self.property)
             )
-        seen = _numbers(re.sub(r"\s+", " ", material.reply), self.about)
+        seen = _numbers(re.sub(r"\s+", " ", material.answer.reply), self.about)
         wanted = [value * factor for factor in self.factors]
         passed = any(abs(a - b) <= 0.02 * abs(b) + 1e-9 for a in seen for b in wanted)
         observed = ", ".join(show(number) for number in seen[:8]) or "no number there"
@@ -235,7 +235,7 @@ class Assumptions(AnswerPredicate):
 
     def observe(self, material: Material) -> Observation:
         """Hold the reply against the world."""
-        stated = claims(material.reply, material.scene(0))
+        stated = claims(material.answer.reply, material.scene(0))
         good = [claim.text for claim in stated if claim.holds]
         bad = [claim.text for claim in stated if claim.holds is False]
         passed = matches(self.number, len(good), "count") and matches(self.contradictions, len(bad), "count")

@@ -71,7 +71,7 @@ class EveryScenario(AnswerPredicate):
 
 def scenario_names(material: Material) -> list[str]:
     """Names of the scenario files that the agent left."""
-    return sorted(name for name in scenarios_in(material.texts) if name not in material.given)
+    return sorted(name for name in scenarios_in(material.answer.files) if name not in material.given)
 
 
 @register("comparison")
