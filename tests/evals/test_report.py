@@ -20,8 +20,8 @@ from irsim_evals.grader.outcome import NOT_REACHED, Cost, Mark, Outcome
 from irsim_evals.report.content import content_of
 from irsim_evals.report.drawing import draw_answer
 from irsim_evals.report.html_text import code, difference, lines_of, number, prose
-from irsim_evals.report.load import Asked, asked_of
-from irsim_evals.report.marked_picture import NumberedMark, marked_picture
+from irsim_evals.report.load import asked_of
+from irsim_evals.report.marked_picture import marked_picture
 from irsim_evals.report.page import page
 from irsim_evals.report.pictures import Drawn, Job, draw_trials
 from irsim_evals.report.summary import summarize
@@ -198,9 +198,7 @@ def test_requirements_that_were_not_reached_are_one_line() -> None:
 
 
 def test_marks_at_one_place_have_one_label() -> None:
-    marks = [
-        NumberedMark(k, Mark(points=[[x, 1]], text=text)) for k, x, text in ((1, 1, "a"), (2, 1, "b"), (1, 6, "a"))
-    ]
+    marks = [(k, Mark(points=[[x, 1]], text=text)) for k, x, text in ((1, 1, "a"), (2, 1, "b"), (1, 6, "a"))]
     text = marked_picture("p", Drawn(b"", (0, 8, 0, 8), (400, 400), 0.0, 0), marks, "At the start")
     assert re.findall(r"<text class=.marktext.*?>(.*?)</text>", text) == ["1, 2 a +1", "1"]
 
@@ -247,7 +245,7 @@ def test_what_cannot_be_drawn_is_a_sentence(text: str, sentence: str) -> None:
 def test_hostile_scenarios_do_not_stop_a_report() -> None:
     crowd = "world: {width: 9, height: 9}\nrobot: {number: 1000000, distribution: {name: random}}\n"
     trials = [trial("one", True), trial("two", False, files={"scenario.yaml": crowd}), trial("three", True, files={})]
-    gallery = draw_trials(trials, [Asked()] * 3)
+    gallery = draw_trials(trials, [None] * 3)
     assert len(gallery.shown[0]) == 2
     assert isinstance(gallery.shown[1], str)
     assert gallery.shown[2] == "There is no scenario to draw."
@@ -271,7 +269,7 @@ def test_real_answers_are_shown_with_what_was_given() -> None:
         trial_of(instance, grade(instance, Answer("", dict(instance.case.files))), "idle"),
     ]
     results = results_of(trials)
-    assert [one.known for one in asked_of(results)] == [True, True]
+    assert [one and one.case.id for one in asked_of(results)] == ["pub-19", "pub-19"]
     text = page(content_of(results, pictures=False))
     assert "Changes of the given scenario.yaml" in text
     assert "The file is the one that was given." in text

@@ -25,22 +25,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 for _command in (
-    cases,
-    export,
-    grade,
-    run,
-    report,
-    compare,
-    check,
-    prove,
-    predicates,
-    selections,
-    properties,
-    predicates,
-    selections,
-    properties,
-    schema,
-):
+    cases, export, grade, run, report, compare, check, prove, predicates, selections, properties, schema,
+):  # fmt: skip
     app.command()(handle_errors(_command))
 
 

@@ -107,7 +107,7 @@ def _arm(arm: ArmSummary) -> dict[str, Any]:
 def _table(table: Table, arms: Sequence[str]) -> dict[str, dict[str, dict[str, int]]]:
     return {
         name: {arm: {"passed": c.passed, "total": c.total} for arm, c in zip(arms, cells, strict=True)}
-        for name, cells in table.rows
+        for name, cells in table
     }
 
 

@@ -4,13 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.outcome import NOT_REACHED, Outcome
 from irsim_evals.report.content import Content
 from irsim_evals.report.failures import category_of
-from irsim_evals.report.html_text import UNITS, code, difference, escaped, lines_of, number, percent, prose, slug
-from irsim_evals.report.load import Asked
-from irsim_evals.report.marked_picture import NumberedMark, marked_picture
-from irsim_evals.report.pictures import Drawn, Gallery, main_file
+from irsim_evals.report.html_text import (
+    UNITS,
+    code,
+    difference,
+    escaped,
+    lines_of,
+    note,
+    number,
+    part,
+    percent,
+    prose,
+    slug,
+)  # fmt: skip
+from irsim_evals.report.marked_picture import marked_picture
+from irsim_evals.report.pictures import Gallery, main_file
 from irsim_evals.results import Trial
 
 __all__ = ["case_sections"]
@@ -39,24 +51,20 @@ def _case(content: Content, places: Sequence[int]) -> str:
     facts += [f"family {first.family}"] if first.family != first.verdict.case else []
     facts += [f"instance {first.verdict.instance}"] if first.verdict.instance else []
     words = f"{name} {first.title} {' '.join(first.category)} {first.family}".lower()
-    hard = f'<p class="note">What makes it hard: {escaped(first.hard)}</p>' if first.hard else ""
+    hard = note(f"What makes it hard: {escaped(first.hard)}") if first.hard else ""
     answers = "".join(_trial(content, place, several) for place in places)
     return (
         f'<details class="case" id="{escaped(slug(name))}" data-categories="{escaped(" ".join(first.category))}" '
         f'data-words="{escaped(words)}"><summary><span class="id">{escaped(name, 60)}</span>'
         f'<span class="title">{escaped(first.title, 200)}</span><span class="chips">{chips}</span></summary>'
-        f'<div class="body"><p class="note">{escaped(" · ".join(facts))}</p>{hard}'
+        f'<div class="body">{note(escaped(" · ".join(facts)))}{hard}'
         f"<h3>Prompt</h3>{prose(first.prompt)}<h3>Answers</h3>{answers}</div></details>"
     )
 
 
 def _chip(trial: Trial, label: str) -> str:
-    words = "passed" if trial.verdict.strict else "failed"
-    sign = "✓" if trial.verdict.strict else "✗"
-    return (
-        f'<span class="chip {_word(trial)}" role="img" aria-label="{escaped(label, 60)}: {words}">{sign} '
-        f"{escaped(label, 60)}</span>"
-    )
+    name, sign, words = escaped(label, 60), *(("✓", "passed") if trial.verdict.strict else ("✗", "failed"))
+    return f'<span class="chip {_word(trial)}" role="img" aria-label="{name}: {words}">{sign} {name}</span>'
 
 
 def _word(trial: Trial) -> str:
@@ -83,19 +91,18 @@ def _trial(content: Content, place: int, several: Collection[str]) -> str:
     body = _verdicts(reached, numbers, lines, scenario[0] if scenario else "")
     if len(reached) < len(failed):
         names = ", ".join(one.assertion for one in failed if one.observed == NOT_REACHED)
-        body += f'<p class="note">Not reached: {escaped(names)}</p>'
+        body += note(f"Not reached: {escaped(names)}")
     if held:
-        rows = _verdicts(held, {}, {}, "")
-        body += f'<details class="part"><summary>{len(held)} requirements that are met</summary>{rows}</details>'
+        body += part(f"{len(held)} requirements that are met", _verdicts(held, {}, {}, ""))
     body += _pictures(content.gallery, place, failed, numbers) if content.gallery else ""
     body += _files(trial, asked, scenario, {number for found_lines in lines.values() for number in found_lines})
-    body += "".join(f'<p class="note">{escaped(note)}</p>' for note in _notes(trial)[:_MAX_NOTES])
+    body += "".join(note(escaped(text)) for text in _notes(trial)[:_MAX_NOTES])
     if trial.reply.strip():
         body += f"<h3>Reply</h3>{prose(trial.reply)}"
     return (
         f'<details class="trial" data-arm="{escaped(trial.arm)}" data-passed="{int(verdict.strict)}">'
         f'<summary><span class="chip {_word(trial)}">{_word(trial)}</span><b>{escaped(_label(trial, several), 60)}</b>'
-        f'<span class="note">{escaped(" · ".join(part for part in about if part))}</span></summary>'
+        f'<span class="note">{escaped(" · ".join(filter(None, about)))}</span></summary>'
         f'<div class="body">{body}</div></details>'
     )
 
@@ -116,14 +123,12 @@ def _cost(trial: Trial) -> str:
 def _verdicts(outcomes: Sequence[Outcome], numbers: dict[int, int], lines: dict[str, range], file: str) -> str:
     items = []
     for one in outcomes:
-        badge = (
-            f'<span class="place" title="number in the picture">{numbers[id(one)]}</span>' if id(one) in numbers else ""
-        )
+        place = numbers.get(id(one))
+        badge = f'<span class="place" title="number in the picture">{place}</span>' if place else ""
         more = [one.stage, *(["not needed to pass"] if one.soft else []), *([f"seed {one.seed}"] if one.seed else [])]
         where = ""
         if one.yaml_path:
-            span = lines.get(one.yaml_path)
-            at = f", {file} {_line_words(span)}" if span else ""
+            at = f", {file} {_line_words(lines[one.yaml_path])}" if one.yaml_path in lines else ""
             where = f"<dt>where</dt><dd><code>{escaped(one.yaml_path, 200)}</code>{escaped(at)}</dd>"
         items.append(
             f'<li><div class="assertion">{badge}<b>{escaped(one.assertion, 100)}</b>'
@@ -140,26 +145,22 @@ def _line_words(lines: range) -> str:
 def _pictures(gallery: Gallery, place: int, failed: Sequence[Outcome], numbers: dict[int, int]) -> str:
     shown = gallery.shown.get(place, "")
     if isinstance(shown, str):
-        return f'<p class="note">{escaped(shown)}</p>' if shown else ""
+        return note(escaped(shown)) if shown else ""
     figures = []
     for name, at_end in zip(shown, (False, True), strict=True):
         drawn = gallery.pictures[name]
         marks = [
-            NumberedMark(numbers[id(one)], mark)
+            (numbers[id(one)], mark)
             for one in failed
             if (one.stage == "behavior") == at_end and one.seed in (None, drawn.seed)
             for mark in one.marks
         ]
-        figures.append(marked_picture(name, drawn, marks, _caption(drawn, at_end)))
+        caption = f"After {drawn.time:.4g} s" if at_end else "At the start"
+        figures.append(marked_picture(name, drawn, marks, caption + (f", seed {drawn.seed}" if drawn.seed else "")))
     return f'<h3>World</h3><div class="pictures">{"".join(figures)}</div>'
 
 
-def _caption(drawn: Drawn, at_end: bool) -> str:
-    seed = f", seed {drawn.seed}" if drawn.seed else ""
-    return f"After {drawn.time:.4g} s{seed}" if at_end else f"At the start{seed}"
-
-
-def _files(trial: Trial, asked: Asked, scenario: tuple[str, str] | None, marked: set[int]) -> str:
+def _files(trial: Trial, asked: Instance | None, scenario: tuple[str, str] | None, marked: set[int]) -> str:
     """The scenario, what changed in files that were given, and the other files."""
     parts = []
     shown = set()
@@ -167,16 +168,14 @@ def _files(trial: Trial, asked: Asked, scenario: tuple[str, str] | None, marked:
         shown.add(scenario[0])
         parts.append(f"<h3>{escaped(scenario[0], 100)}</h3>{code(scenario[1], marked)}")
     files = trial.verdict.files
-    for name, before in asked.given.items():
+    for name, before in asked.case.files.items() if asked else ():
         if name not in files:
-            parts.append(f'<p class="note">The given file {escaped(name, 100)} is gone.</p>')
+            parts.append(note(f"The given file {escaped(name, 100)} is gone."))
         elif name.endswith((".yaml", ".yml")) or files[name] != before:
             shown.add(name)
-            changes = difference(before, files[name])
-            parts.append(f"<h3>Changes of the given {escaped(name, 100)}</h3>{changes}")
+            parts.append(f"<h3>Changes of the given {escaped(name, 100)}</h3>{difference(before, files[name])}")
     others = [name for name in files if name not in shown]
-    for name in others[:_MAX_FILES]:
-        parts.append(f'<details class="part"><summary>{escaped(name, 100)}</summary>{code(files[name])}</details>')
+    parts += [part(escaped(name, 100), code(files[name])) for name in others[:_MAX_FILES]]
     if len(others) > _MAX_FILES:
-        parts.append(f'<p class="note">{len(others) - _MAX_FILES} more files are in results.json.</p>')
+        parts.append(note(f"{len(others) - _MAX_FILES} more files are in results.json."))
     return "".join(parts)

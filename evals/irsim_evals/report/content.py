@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from irsim_evals.cases.store import PUBLISHED, Store
+from irsim_evals.cases.store import PUBLISHED, Instance, Store
 from irsim_evals.report.comparison import Comparison, compare
 from irsim_evals.report.failures import Category, category_of, counted
-from irsim_evals.report.load import Asked, Proof, asked_of
+from irsim_evals.report.load import Proof, asked_of
 from irsim_evals.report.pictures import Gallery, draw_trials
 from irsim_evals.report.summary import ArmSummary, Table, arms_of, summarize, table_by
 from irsim_evals.results import Results
@@ -24,7 +24,7 @@ class Content:
     Attributes:
         title: Title of the page.
         results: All trials.
-        asked: The question of each trial's case.
+        asked: Case of each trial as it was asked; None where it is not installed unchanged.
         arms: Numbers of each arm.
         categories, levels: Passes by category and by level.
         comparisons: Each arm compared with the one before.
@@ -35,7 +35,7 @@ class Content:
 
     title: str
     results: Results
-    asked: Sequence[Asked]
+    asked: Sequence[Instance | None]
     arms: list[ArmSummary]
     categories: Table
     levels: Table

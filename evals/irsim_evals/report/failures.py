@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from irsim_evals.grader.outcome import Outcome, Step, Verdict
 
@@ -70,12 +70,8 @@ def counted(categories: Iterable[Category | None]) -> dict[Category, int]:
     return {name: listed.count(name) for name in CATEGORIES if name in listed}
 
 
-def failure_rows(failures: Mapping[str, Mapping[Category, int]]) -> list[list[str]]:
-    """The rows of a table: category, number of attempts of each arm, meaning.
-
-    Args:
-        failures: Arm → category → number of attempts.
-    """
+def failure_rows(failures: Mapping[str, Mapping[Category, int]]) -> list[list[Any]]:
+    """The rows of a table from arm → category → number of attempts: category, number of each arm, meaning."""
     return [
         [name, *(str(numbers.get(name, 0)) for numbers in failures.values()), meaning]
         for name, meaning in MEANINGS.items()

@@ -14,7 +14,10 @@ from irsim.common.yaml.nodes import Node
 from irsim.scenario.limits import Limits
 from irsim.scenario.yaml.document import Document, load_text
 
-__all__ = ["UNITS", "code", "difference", "escaped", "lines_of", "number", "percent", "prose", "slug"]
+__all__ = [
+    "UNITS", "code", "difference", "escaped", "lines_of", "note", "number", "one_line", "part", "percent", "prose",
+    "slug",
+]  # fmt: skip
 
 UNITS = {
     "tokens": "tokens", "calls": "calls", "errors": "failed calls", "seconds": "seconds",
@@ -36,8 +39,22 @@ _PART = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
 
 def escaped(text: object, longest: int = 2000) -> str:
     """A text in one line, without control characters, for an element or an attribute."""
-    spaced = "".join(" " if c.isspace() else c for c in str(text)[: longest + 1])
-    return html.escape(clean(spaced, longest), quote=True)
+    return html.escape(one_line(str(text)[: longest + 1], longest), quote=True)
+
+
+def one_line(text: str, longest: int) -> str:
+    """A text in one line without control characters, which could reorder what a reader sees."""
+    return clean("".join(" " if c.isspace() else c for c in text), longest)
+
+
+def note(html: str) -> str:
+    """A paragraph in small letters."""
+    return f'<p class="note">{html}</p>'
+
+
+def part(title: str, html: str) -> str:
+    """Something that a click on its title opens."""
+    return f'<details class="part"><summary>{title}</summary>{html}</details>'
 
 
 def prose(text: str) -> str:
@@ -54,10 +71,8 @@ def code(text: str, marked: Collection[int] = ()) -> str:
         marked: Numbers of the lines that are marked, from 1 on.
     """
     lines, rest = _cut(text)
-    parts = [
-        f'<span class="marked">{html.escape(line)}</span>' if number in marked else f"<span>{html.escape(line)}</span>"
-        for number, line in enumerate(lines, 1)
-    ]
+    kinds = [' class="marked"' * (number in marked) for number in range(1, len(lines) + 1)]
+    parts = [f"<span{kind}>{html.escape(line)}</span>" for kind, line in zip(kinds, lines, strict=True)]
     return '<pre class="code" tabindex="0">' + "\n".join(parts) + "</pre>" + _rest(rest)
 
 
@@ -65,9 +80,9 @@ def difference(before: str, after: str) -> str:
     """The changes of a file, line by line; a sentence if nothing did."""
     old, new = before.splitlines(), after.splitlines()
     if old == new:
-        return '<p class="note">The file is the one that was given.</p>'
+        return note("The file is the one that was given.")
     if max(len(old), len(new)) > _MAX_COMPARED_LINES:
-        return f'<p class="note">A file of more than {_MAX_COMPARED_LINES} lines is not compared.</p>'
+        return note(f"A file of more than {_MAX_COMPARED_LINES} lines is not compared.")
     changes = list(difflib.unified_diff(old, new, lineterm="", n=2))[2:]
     lines, rest = _cut("\n".join(changes))
     kinds = {"+": "added", "-": "removed", "@": "hunk"}
@@ -134,15 +149,9 @@ def slug(text: str) -> str:
 def _cut(text: str) -> tuple[list[str], int]:
     """The first lines of a text as they are shown, and how many are left out."""
     lines = text[:_MAX_CHARACTERS].splitlines()
-    shown = [_visible(line) for line in lines[:_MAX_LINES]]
+    shown = [one_line(line.replace("\t", "    "), _MAX_LINE) for line in lines[:_MAX_LINES]]
     return shown, text.count("\n") + 1 - len(shown) if len(shown) < len(lines) or len(text) > _MAX_CHARACTERS else 0
 
 
-def _visible(line: str) -> str:
-    """A line without control characters, which could reorder what a reader sees."""
-    spaced = "".join(" " if c.isspace() else c for c in line.replace("\t", "    "))
-    return clean(spaced, _MAX_LINE)
-
-
 def _rest(lines: int) -> str:
-    return f'<p class="note">{lines} more lines are in results.json.</p>' if lines > 0 else ""
+    return note(f"{lines} more lines are in results.json.") if lines > 0 else ""

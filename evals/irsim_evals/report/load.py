@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,21 +12,17 @@ from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.messages.translate import option_message, option_problems
-from irsim_evals.cases.store import PUBLISHED, Store, all_case_ids, case_of, cases_hash, given_pictures
+from irsim_evals.cases.store import PUBLISHED, Instance, Store, all_case_ids, case_of, cases_hash
 from irsim_evals.results import Results, Trial, read_results
 from irsim_evals.statistics import Interval, wilson
 
-__all__ = ["Asked", "Proof", "ProofRow", "asked_of", "load_proof", "load_results", "merge"]
+__all__ = ["Proof", "ProofRow", "asked_of", "load_proof", "load_results", "merge"]
 
 _RIGHT_KINDS = ("gold", "rewrite", "free mutant")
 """Kinds of the proof that the grader must accept; it must reject all others."""
 _MAX_MESSAGE = 120
 """Characters of a foreign message that an error repeats."""
 _ADVICE = "write one with irsim-evals grade DIR --output FILE or irsim-evals run"
-_EPISODE_S = 10.0
-"""Length of the episode that is drawn where a case has no episodes [s]."""
-
-
 Count = Annotated[int, Field(ge=0, le=10**12)]
 
 
@@ -136,55 +131,14 @@ def _first(error: ValidationError, model: type[BaseModel]) -> str:
     return clean(option_message(option_problems(error, {}, model)[:1])[0], _MAX_MESSAGE)
 
 
-@dataclass(frozen=True)
-class Asked:
-    """The question of a case.
-
-    Attributes:
-        known: Whether the case is installed, unchanged.
-        given: Files that the agent started with.
-        seed: Seed of the first world.
-        episode_seed: Seed of the first episode.
-        episode_seconds: Its length [s].
-        episode_behavior: Behavior that drives the robots in it instead of theirs.
-        pictures: Pictures that the agent started with: name → content of the file.
-    """
-
-    known: bool = False
-    given: Mapping[str, str] = field(default_factory=dict)
-    seed: int = 0
-    episode_seed: int = 0
-    episode_seconds: float = _EPISODE_S
-    episode_behavior: str | None = None
-    pictures: Mapping[str, bytes] = field(default_factory=dict)
-
-
-def asked_of(results: Results, store: Store = PUBLISHED) -> list[Asked]:
-    """The question of each trial's case; nothing is known if the trials were made with other cases than the present."""
-    if results.cases != cases_hash(store):
-        return [Asked() for _ in results.trials]
-    by_key: dict[tuple[str, str], Asked] = {}
-    for trial in results.trials:
-        if trial.key not in by_key:
-            by_key[trial.key] = _asked(trial, store)
-    return [by_key[trial.key] for trial in results.trials]
-
-
-def _asked(trial: Trial, store: Store) -> Asked:
-    if trial.verdict.case not in all_case_ids(store):
-        return Asked()
-    try:
-        instance = case_of(trial.verdict.case, int(trial.verdict.instance) if trial.verdict.instance else None, store)
-    except ValueError:  # an instance that is not a number
-        return Asked()
-    case = instance.case
-    plan = case.episodes[0] if case.episodes else None
-    return Asked(
-        known=True,
-        given=case.files,
-        seed=case.seeds[0],
-        episode_seed=plan.seeds[0] if plan else case.seeds[0],
-        episode_seconds=float(plan.seconds) if plan else _EPISODE_S,
-        episode_behavior=plan.behavior if plan else None,
-        pictures=given_pictures(instance),
-    )
+def asked_of(results: Results, store: Store = PUBLISHED) -> list[Instance | None]:
+    """The case of each trial as it was asked; None if it is not installed or the trials were made with other cases."""
+    known = all_case_ids(store) if results.cases == cases_hash(store) else []
+    asked: dict[tuple[str, str], Instance | None] = {}
+    for case, name in {trial.key for trial in results.trials}:
+        try:
+            seed = int(name) if name else None
+            asked[case, name] = case_of(case, seed, store) if case in known else None
+        except ValueError:  # an instance that is not a number
+            asked[case, name] = None
+    return [asked[trial.key] for trial in results.trials]

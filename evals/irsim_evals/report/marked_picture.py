@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.report.html_text import escaped
 from irsim_evals.report.pictures import Drawn
 
-__all__ = ["NumberedMark", "marked_picture"]
+__all__ = ["marked_picture"]
+
+NumberedMark = tuple[int, Mark]
+"""Number of an assertion, and a mark of it."""
 
 _LEFT, _BELOW, _ABOVE, _RIGHT = 30, 18, 6, 10
 """Margins for the axes [px]."""
@@ -21,14 +23,6 @@ _RING = 11
 """Radius of the ring round a point [px]."""
 _TICKS = 5
 """Labels along an axis, about."""
-
-
-@dataclass(frozen=True)
-class NumberedMark:
-    """A mark, and the number of the assertion that it belongs to."""
-
-    number: int
-    mark: Mark
 
 
 def marked_picture(name: str, drawn: Drawn, marks: Sequence[NumberedMark], caption: str) -> str:
@@ -88,25 +82,21 @@ def _marks(drawn: Drawn, marks: Sequence[NumberedMark]) -> tuple[str, int]:
     """
     places: dict[tuple[tuple[int, int], ...], list[NumberedMark]] = {}
     outside = 0
-    for one in marks:
-        points = [_spot(drawn, p[0], p[1]) for p in one.mark.points if len(p) >= 2 and _is_place(p)]
+    texts_of: dict[int, set[str]] = {}
+    for number, mark in marks:
+        texts_of.setdefault(number, set()).add(mark.text)
+        points = [_spot(drawn, p[0], p[1]) for p in mark.points if len(p) >= 2 and _is_place(p)]
         if any(_is_inside(drawn, point) for point in points):
-            places.setdefault(tuple((round(x), round(y)) for x, y in points), []).append(one)
+            places.setdefault(tuple((round(x), round(y)) for x, y in points), []).append((number, mark))
         else:
             outside += 1
-    texts_of: dict[int, set[str]] = {}
-    for one in marks:
-        texts_of.setdefault(one.number, set()).add(one.mark.text)
     named: set[int] = set()
     parts = []
     for place, here in places.items():
-        texts = dict.fromkeys(
-            one.mark.text
-            for one in here
-            if one.mark.text and (one.number not in named or len(texts_of[one.number]) > 1)
-        )
-        named.update(one.number for one in here)
-        parts.append(_shape(drawn, place, sorted({one.number for one in here}), list(texts)))
+        untold = [(k, mark.text) for k, mark in here if mark.text and (k not in named or len(texts_of[k]) > 1)]
+        numbers = {number for number, _ in here}
+        named |= numbers
+        parts.append(_shape(drawn, place, sorted(numbers), list(dict.fromkeys(text for _, text in untold))))
     return "".join(parts), outside
 
 

@@ -6,15 +6,17 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from irsim.common.hashing import digest
+from irsim_evals.cases.store import Instance, given_pictures
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.limited import LimitError, preload, run_all
-from irsim_evals.report.load import Asked
 from irsim_evals.results import Trial
 
 __all__ = ["Drawn", "Gallery", "Job", "draw_trials", "main_file"]
 
 _SECONDS = 30.0
 """Time after which the drawing of one answer is ended [s]."""
+_EPISODE_S = 10.0
+"""Length of the episode that is drawn where a case has no episodes [s]."""
 _MAX_BYTES = 5_000_000
 """Size of all pictures of a page; the failed trials come first."""
 
@@ -76,19 +78,19 @@ class Gallery:
     size: int = 0
 
 
-def main_file(trial: Trial, asked: Asked) -> tuple[str, str] | None:
+def main_file(trial: Trial, asked: Instance | None) -> tuple[str, str] | None:
     """Name and text of the scenario that was graded; None without a scenario."""
-    return find_scenario(Answer("", trial.verdict.files, trial.reply), asked.given)
+    return find_scenario(Answer("", trial.verdict.files, trial.reply), asked.case.files if asked else {})
 
 
 def draw_trials(
-    trials: Sequence[Trial], asked: Sequence[Asked], progress: Callable[[int, int], None] | None = None
+    trials: Sequence[Trial], asked: Sequence[Instance | None], progress: Callable[[int, int], None] | None = None
 ) -> Gallery:
     """Draw the worlds of all trials that could be built, at the start and at the end.
 
     Args:
         trials: The trials.
-        asked: The question of each trial's case.
+        asked: Case of each trial, as far as it is known.
         progress: Callback ``(done, total)``.
     """
     gallery = Gallery()
@@ -143,16 +145,18 @@ def _keep(gallery: Gallery, name: str, drawn: list[Drawn] | str) -> list[str] | 
     return names
 
 
-def _job(trial: Trial, asked: Asked, scenario: tuple[str, str]) -> Job:
+def _job(trial: Trial, asked: Instance | None, scenario: tuple[str, str]) -> Job:
     """The job of drawing a trial: worlds with the seeds that the failures were observed with, else with the case's."""
-    failed = [one for one in trial.verdict.failed() if one.seed is not None]
-    start = next((one.seed for one in failed if one.stage != "behavior"), None)
-    end = next((one.seed for one in failed if one.stage == "behavior"), None)
+    seeds = {one.stage == "behavior": one.seed for one in reversed(trial.verdict.failed()) if one.seed is not None}
+    if asked is None:
+        return Job(*scenario, seeds.get(False, 0), seeds.get(True, 0), _EPISODE_S)
+    case = asked.case
+    plan = case.episodes[0] if case.episodes else None
     return Job(
         *scenario,
-        start_seed=asked.seed if start is None else start,
-        end_seed=asked.episode_seed if end is None else end,
-        seconds=asked.episode_seconds,
-        behavior=asked.episode_behavior,
-        pictures=asked.pictures,
+        start_seed=seeds.get(False, case.seeds[0]),
+        end_seed=seeds.get(True, plan.seeds[0] if plan else case.seeds[0]),
+        seconds=float(plan.seconds) if plan else _EPISODE_S,
+        behavior=plan.behavior if plan else None,
+        pictures=given_pictures(asked),
     )

@@ -29,15 +29,8 @@ class Cell:
         return self.passed / self.total if self.total else math.nan
 
 
-@dataclass(frozen=True)
-class Table:
-    """Passes of each arm in each row.
-
-    Attributes:
-        rows: (name, cell of each arm in the order of the arms).
-    """
-
-    rows: list[tuple[str, list[Cell]]]
+Table = list[tuple[str, list[Cell]]]
+"""Passes: name of a row, and its cell of each arm in the order of the arms."""
 
 
 @dataclass(frozen=True)
@@ -143,11 +136,8 @@ def table_by(trials: Sequence[Trial], arms: Sequence[str], names: Callable[[Tria
     for trial in trials:
         for name in names(trial):
             by_row.setdefault(name, {}).setdefault(trial.arm, []).append(trial.verdict.strict)
-    rows = []
-    for name in sorted(by_row):
-        passes = [by_row[name].get(arm, []) for arm in arms]
-        rows.append((name, [Cell(sum(one), len(one)) for one in passes]))
-    return Table(rows)
+    passes = [(name, [by_row[name].get(arm, []) for arm in arms]) for name in sorted(by_row)]
+    return [(name, [Cell(sum(one), len(one)) for one in cells]) for name, cells in passes]
 
 
 def _mean_interval(values: Sequence[float]) -> Interval:
