@@ -57,7 +57,8 @@ def test_no_one_is_faster_than_braking_before_a_wall_allows(
         core.advance(world, state, 1)
         gap, speed = 9.9 - 0.2 - float(state.pose[0, 0]), float(state.twist[0, 0])
         assert not state.collided[0]
-        if drive == "diff" and speed > 0:
+        turns_away = float(state.twist[0, 2] * state.pose[0, 2]) > 0  # and so needs less room than straight ahead
+        if drive == "diff" and speed > 0 and not turns_away:
             along = float(np.hypot(*state.twist[0, :2]))
             assert along * along / (2 * acce) * (speed / along) <= gap + along * dt + 1e-6
 
