@@ -8,10 +8,11 @@ FACTS = (
     "count", "role", "kinematics", "shape", "size", "position", "heading", "goal", "goal_heading", "behavior",
     "options", "forward", "backward", "sideways", "turn", "steer", "acce", "sensor_count", "sensor_kind", "range",
     "beams", "opening", "sensor_options", "color", "name", "threshold", "passable", "wheelbase", "fov", "tags",
-    "noise", "driven", "way", "random", "cover",
+    "noise", "driven", "delays", "way", "random", "cover",
 )  # fmt: skip
-"""Kinds of facts of a body; ``driven`` is whether it has a behavior, ``way`` how its goals lie from its start,
-``random`` whether its place is drawn, ``cover`` whether all that a fixed body covered is covered still."""
+"""Kinds of facts of a body; ``driven`` is whether it has a behavior, ``delays`` when it comes into the world and starts
+to move, ``way`` how its goals lie from its start, ``random`` whether its place is drawn, ``cover`` whether all that a
+fixed body covered is covered still."""
 GROUPS = {
     "pose": ("position", "heading"),
     "limits": ("forward", "backward", "sideways", "turn", "steer", "acce"),

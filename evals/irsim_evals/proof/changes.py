@@ -146,6 +146,8 @@ def _of_body(body: GradedBody, kind: str) -> Any:
         return body.behavior is not None
     if kind in GROUPS["sensors"]:
         return _of_sensors(body.sensors, kind)
+    if kind == "delays":
+        return [body.record.appear_time, body.record.start_time]
     if kind == "noise":
         return [getattr(body.record.kinematics, key, None) for key in ("noise", "alpha")]
     if kind == "acce":
