@@ -23,7 +23,7 @@ from irsim_evals.proof.operators import Change, Data, each_entry, entries, opera
 __all__ = ["ATTACKS", "EVERYWHERE", "MOTION", "attack", "is_wrong", "together"]
 
 ATTACKS: dict[str, frozenset[str]] = {}
-"""Name of an operator → predicates and properties that it spoils."""
+"""Name of an operator → predicates, keys of predicates (``crosses.times``) and properties that it spoils."""
 EVERYWHERE = "everywhere"
 """Stands for what every prompt asks for, unless the case leaves it free."""
 MOTION = ("arrive", "crosses", "explores", "moves", "one_way", "roams", "sees", "visits")
@@ -79,7 +79,7 @@ def _states(case: Case, scene: GradedScene, item: Any, spoilt: frozenset[str], c
     said = item.predicate
     rows = getattr(said, "rows", None) or [getattr(said, "has", {})]
     asked = {key for row in rows for key, match in row.items() if match.eq is not False and match.given is None}
-    hit = spoilt & {said.name, *asked}
+    hit = spoilt & {said.name, *asked, *(f"{said.name}.{key}" for key in said.model_fields_set)}
     bodies = {body for body, kind in changed if hit - set(FACTS) or kind in hit}
     if not hit or not bodies:
         return False
@@ -138,6 +138,15 @@ def late_bodies(data: Data) -> Change:
             return True
 
         yield from together(data, change, f"{key} 1000")
+
+
+@attack_on_entries("5 s later", "crosses.times", "sees.first")
+def later(entry: Data) -> Any:
+    """Bodies that start some seconds later."""
+    if not _moves(entry):
+        return False
+    entry["start_time"] = entry.get("start_time", 0.0) + 5.0
+    return True
 
 
 @attack_on_entries("dash", "avoids")
