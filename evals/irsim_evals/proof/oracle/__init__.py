@@ -1,1 +1,1 @@
-"""A second, naive implementation of the ten commonest predicates, which shares no code with the first."""
+"""A second, naive implementation of the ten commonest predicates, which shares nothing of ours with the first."""
