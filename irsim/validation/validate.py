@@ -10,6 +10,7 @@ from pathlib import Path
 from irsim.common.text import plural
 from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.diagnostics.errors import PlacementError
+from irsim.episodes.rounds import when_it_ends
 from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.findings import Finding
 from irsim.results.validation import Fix, ScenarioDiff, ValidationReport
@@ -68,6 +69,8 @@ def validate(
             if more := warn_of_collisions(report.findings, reading.scenario, {str(name) for name in hit}):
                 report.hints, report.warnings = report.hints - more, report.warnings + more
                 report.summary = f"{report.summary.partition(';')[0]}; {plural(report.warnings, 'warning')}"
+    elif reading.scenario is not None and (ends := when_it_ends(reading.scenario.robots())):
+        report.summary += f"; {ends}"
     return report
 
 

@@ -47,6 +47,9 @@ def test_the_try_before_the_run_says_it() -> None:
     other = PATROL + SHUTTLE.partition("robot:\n")[2].replace("1, 1, 0", "1, 8, 0").replace("[5, 1]", "[5, 8]")
     tried = validate(text=other, simulate=True).dry_run
     assert "'robot_0', 'robot_1' patrol: each counts as arrived after its first lap" in str(tried)
+    ends = "; 'robot_0' patrols: the run ends at its first lap (until: time_limit goes on)"
+    assert validate(text=PATROL).summary.endswith(ends)
+    assert "patrol" not in validate(text=PATROL.replace(", loop: true", "")).summary
 
 
 def test_other_robots_have_no_laps() -> None:
