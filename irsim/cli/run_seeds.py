@@ -64,8 +64,7 @@ def _show(result: RunsResult) -> None:
     out.print(clean(result.summary, 400))
     if result.failed:
         shown = result.shown
-        if shown.run_id is not None or not shown.perturb:  # which only a record can repeat in a picture
-            out.print(Text.assemble("look: ", (_look(result, shown), "cyan")), soft_wrap=True)
+        out.print(Text.assemble("look: ", (_look(result, shown), "cyan")), soft_wrap=True)
         out.print(Text.assemble("reproduce: ", (shown.reproduce, "cyan")), soft_wrap=True)
 
 
@@ -74,6 +73,8 @@ def _look(result: RunsResult, shown: RunResult) -> str:
     step = shown.decisive_step or shown.steps
     if shown.run_id is not None:
         return f"irsim render {shown.run_id} --steps {step} -o failed.png"
+    if shown.perturb:  # which only a record can repeat in a picture
+        return f"{shown.reproduce} --record && irsim render last --steps {step} -o failed.png"
     extra = ["--policy", shown.policy or shown.behavior] if shown.policy or shown.behavior else []
     words = ["irsim", "render", result.scenario, "--seed", str(shown.seed), *extra, "--steps", str(step)]
     return shlex.join([*map(str, words), "-o", "failed.png"])

@@ -31,6 +31,15 @@ def test_the_table_has_a_row_for_each_seed_and_the_first_failure_can_be_drawn() 
     assert "reproduce: irsim run crowd.yaml --seed 0" in shown.stdout
 
 
+def test_a_failure_under_disturbances_is_recorded_before_it_is_drawn() -> None:
+    shown = CliRunner().invoke(app, ["run", "crowd.yaml", "--seeds", "1", "--perturb", "delay=1"])
+    look = next(line for line in shown.stdout.splitlines() if line.startswith("look: "))
+    for command in look.removeprefix("look: ").split(" && "):
+        done = CliRunner().invoke(app, command.split()[1:])
+        assert done.exit_code == 0, done.output
+    assert Path("failed.png").stat().st_size > 1000
+
+
 def test_json_has_the_episodes_and_their_number_counts_for_success() -> None:
     told = CliRunner().invoke(app, ["run", "crowd.yaml", "--seeds", "2", "--json", "--require-success"])
     assert told.exit_code == 1
