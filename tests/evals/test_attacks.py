@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 
-from irsim_evals.cases.store import Instance
+from irsim_evals.cases.store import Instance, case_of, golds_of
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.proof.attacks import ATTACKS
 from irsim_evals.proof.attacks_on_answers import attacks_on_answer
 from irsim_evals.proof.mutants import mutants_of
 from irsim_evals.proof.operators import dump
-from irsim_evals.proof.trials import Trial, kind_of
+from irsim_evals.proof.trials import Trial, changes_of, kind_of
 from tests.evals.conftest import made_up
 
 ROOM = """
@@ -97,3 +99,25 @@ def test_answers_are_attacked_by_files_and_promises() -> None:
     assert {operator for operator, _, _ in made} == {"hidden_file", "promise"}
     assert any(".cache/run" in answer.files for _, _, answer in made)
     assert list(attacks_on_answer(made_up(COUNT, python="any"), Answer("x"))) == []
+
+
+ONLY: dict[str, Any] = yaml.safe_load(Path(__file__).with_name("attacks.yaml").read_text(encoding="utf-8"))
+
+
+def test_each_attack_has_a_case_that_only_it_catches() -> None:
+    assert ONLY.keys() == {*ATTACKS, "hidden_file", "promise"}
+
+
+@pytest.mark.slow(5)
+@pytest.mark.rotates(4)
+@pytest.mark.parametrize("operator", ONLY)
+def test_only_it_catches(operator: str) -> None:
+    """Without some assertions the attack is accepted, and no other attack is: only it shows that they are missing."""
+    instance, without = case_of(ONLY[operator]["case"]), set(ONLY[operator]["without"])
+    accepted = set()
+    for trial in (one for gold in golds_of(instance) for one in changes_of(instance, gold, Counter())):
+        if trial.operator not in ONLY or (kind_of(trial) if trial.kind == "mutant" else trial.kind) != "attack":
+            continue
+        if {one.assertion for one in grade(instance, trial.answer).failed()} <= without:
+            accepted.add(trial.operator)
+    assert accepted == {operator}
