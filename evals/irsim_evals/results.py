@@ -61,14 +61,7 @@ class Results(Record):
 
 
 def trial_of(instance: Instance, verdict: Verdict, arm: str, **more: Any) -> Trial:
-    """A trial with what the case says about it.
-
-    Args:
-        instance: The case.
-        verdict: The grader's verdict.
-        arm: Who answered.
-        more: ``number``, ``model``, ``reply``, ``ended`` and ``drift`` of the trial.
-    """
+    """A trial with what the case says about it, and perhaps its ``number``, ``model``, ``reply`` and ``ended``."""
     case = instance.case
     turns = [instance.prompt, *case.turns]
     return Trial(

@@ -14,8 +14,6 @@ __all__ = ["Interval", "mcnemar", "mean_pass_hat_k", "paired_bootstrap", "pass_h
 
 _SAMPLES = 10_000
 """Number of draws of a bootstrap."""
-_LEVEL = 0.95
-"""Share of the draws inside the interval."""
 
 
 class Interval(NamedTuple):
@@ -27,14 +25,11 @@ class Interval(NamedTuple):
 
 
 def wilson(passed: float, total: int) -> Interval:
-    """Share of passes with Wilson's score interval of 95 %.
+    """Share of passes with Wilson's score interval of 95 %; without trials nothing is known, and it is 0 to 1.
 
     Args:
         passed: Number of passes; with shares of passes, their sum.
-        total: Number of trials; without trials nothing is known, and the interval is 0 to 1.
-
-    Raises:
-        ValueError: There are fewer trials than passes, or a number is negative.
+        total: Number of trials, at least as many.
     """
     _check_counts(passed, total)
     return Interval(passed / total, *statistics.wilson(passed, total)) if total else Interval(math.nan, 0.0, 1.0)
@@ -45,11 +40,8 @@ def pass_hat_k(passed: int, total: int, k: int) -> float:
 
     Args:
         passed: Number of attempts that passed.
-        total: Number of attempts.
+        total: Number of attempts, at least ``k``.
         k: Number of attempts that must all pass, at least 1.
-
-    Raises:
-        ValueError: There are fewer than ``k`` attempts, fewer attempts than passes, or a number is negative.
 
     References:
         Yao et al.: tau-bench (2024), section 3.
@@ -61,28 +53,15 @@ def pass_hat_k(passed: int, total: int, k: int) -> float:
 
 
 def mean_pass_hat_k(attempts: Iterable[tuple[int, int]], k: int) -> float:
-    """Mean of pass^k over cases; NaN if no case has ``k`` attempts.
-
-    Args:
-        attempts: ``(passed, total)`` of each case; cases with fewer than ``k`` attempts are left out.
-        k: Number of attempts that must all pass.
-    """
+    """Mean of pass^k over cases with ``(passed, total)`` attempts, of which at least ``k``; NaN if there is none."""
     values = [pass_hat_k(passed, total, k) for passed, total in attempts if total >= k]
     return math.fsum(values) / len(values) if values else math.nan
 
 
 def mcnemar(only_first: int, only_second: int) -> float:
-    """Exact two-sided p value of McNemar's test.
+    """Exact two-sided p value of McNemar's test, from the numbers of pairs of which only one passes.
 
-    Args:
-        only_first: Number of pairs of which only the first passes.
-        only_second: Number of pairs of which only the second passes.
-
-    Returns:
-        Probability of a split at least this uneven if both were equally good; 1 if no pair differs.
-
-    Raises:
-        ValueError: A number is negative.
+    It is the probability of a split at least this uneven if both were equally good; 1 if no pair differs.
     """
     if min(only_first, only_second) < 0:
         raise ValueError("numbers of pairs are not negative")
@@ -92,16 +71,13 @@ def mcnemar(only_first: int, only_second: int) -> float:
 
 
 def paired_bootstrap(differences: Mapping[str, Sequence[float]], *, seed: int = 0) -> Interval:
-    """Mean difference of paired results with a percentile interval, drawn by family.
+    """Mean difference over all pairs with a percentile interval of 95 %, drawn by family; NaN without pairs.
 
     Cases of one family share a base, so whole families are drawn, with replacement.
 
     Args:
         differences: Family → difference of each of its pairs, second minus first.
         seed: Seed of the draws.
-
-    Returns:
-        The mean over all pairs and its interval of 95 %; NaN without pairs.
     """
     families = [(math.fsum(values), len(values)) for _, values in sorted(differences.items()) if len(values)]
     if not families:
@@ -109,22 +85,19 @@ def paired_bootstrap(differences: Mapping[str, Sequence[float]], *, seed: int = 
     table = np.array(families, dtype=float)
     drawn = np.random.default_rng(seed).integers(0, len(families), (_SAMPLES, len(families)))
     sums = table[drawn].sum(axis=1)
-    low, high = np.quantile(sums[:, 0] / sums[:, 1], [(1 - _LEVEL) / 2, (1 + _LEVEL) / 2])
+    low, high = np.quantile(sums[:, 0] / sums[:, 1], [0.025, 0.975])
     return Interval(float(table[:, 0].sum() / table[:, 1].sum()), float(low), float(high))
 
 
 def sign_flip(differences: Mapping[str, Sequence[float]], *, seed: int = 0) -> float:
-    """Two-sided p value of a paired permutation test of the mean difference, by family.
+    """Two-sided p value of a paired permutation test of the mean difference, by family; 1 without pairs.
 
-    Were both equally good, the differences of each family might as well have the other sign. With few families all
-    signs are tried, else as many as a bootstrap has draws.
+    Were both equally good, the differences of each family might as well have the other sign, so this is the share of
+    signs with a mean at least as far from 0. With few families all signs are tried, else as many as a bootstrap draws.
 
     Args:
         differences: Family → difference of each of its pairs.
         seed: Seed of the draws.
-
-    Returns:
-        Share of the signs with a mean at least as far from 0; 1 without pairs.
     """
     sums = np.array([math.fsum(values) for _, values in sorted(differences.items()) if len(values)])
     if not len(sums):

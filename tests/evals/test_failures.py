@@ -11,7 +11,7 @@ import pytest
 from irsim_evals.grader.artefact import cost_of
 from irsim_evals.grader.outcome import Cost, Stage, Step
 from irsim_evals.report.content import content_of
-from irsim_evals.report.failures import CATEGORIES, category_of
+from irsim_evals.report.failures import MEANINGS, category_of
 from irsim_evals.report.markdown import markdown
 from irsim_evals.report.page import page
 from irsim_evals.results import Results, Trial
@@ -66,7 +66,7 @@ def test_each_answer_has_one_main_reason(category: str | None, one: Trial) -> No
 def test_reports_and_the_command_count_the_reasons(tmp_path: Path) -> None:
     trials = [one.model_copy(update={"number": k}) for k, (_, one) in enumerate(EXAMPLES, 1)]
     content = content_of(Results(trials=trials), pictures=False)
-    assert list(content.failures["skill"]) == list(CATEGORIES)
+    assert list(content.failures["skill"]) == list(MEANINGS)
     assert sum(content.failures["skill"].values()) == len([name for name, _ in EXAMPLES if name])
     assert "| recovery | 2 | the last check showed an error, and it was not mended |" in markdown(content)
     assert "(attempt 9), recovery: size: expected radius 0.2" in markdown(content)

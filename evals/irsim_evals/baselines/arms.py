@@ -13,7 +13,7 @@ from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.limited import grade_all
 from irsim_evals.results import Trial, trial_of
 
-__all__ = ["BASELINES", "answer", "answers", "run_baseline"]
+__all__ = ["BASELINES", "answers", "run_baseline"]
 
 
 def _null(task: Task) -> Answer:
@@ -30,21 +30,8 @@ BASELINES: dict[str, Callable[[Iterable[Task]], Iterable[Answer]]] = {
 
 
 def answers(name: str, instances: Iterable[Instance]) -> Iterator[Answer]:
-    """The answers of a baseline to some cases, in their order.
-
-    Raises:
-        KeyError: No baseline has that name.
-    """
+    """The answers of a baseline to some cases, in their order."""
     return iter(BASELINES[name](task_of(instance) for instance in instances))
-
-
-def answer(name: str, instance: Instance) -> Answer:
-    """The answer of a baseline to one case.
-
-    Raises:
-        KeyError: No baseline has that name.
-    """
-    return next(answers(name, [instance]))
 
 
 def run_baseline(
@@ -52,10 +39,8 @@ def run_baseline(
 ) -> list[Trial]:
     """Let a baseline answer some cases and grade the answers; one is graded while the next is made.
 
-    Args:
-        arm: Name of the baseline.
-        instances: The cases; further instances of the same case count as further attempts at it.
-        progress: Callback ``(done, total)``; an answer and its grading count as one step each.
+    Further instances of one case count as further attempts at it. ``progress(done, total)`` is called after each answer
+    and after each grading.
     """
     made: list[Answer] = []
     trials: list[Trial] = []

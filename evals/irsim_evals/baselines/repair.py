@@ -45,16 +45,11 @@ def _answer(server: Server, task: Task) -> Answer:
         reply = f"Changed in {name}: {'; '.join(fixed)}." if fixed else f"{name} has no error: nothing changed."
     else:
         text, reply = written(task)
-        if not _works(server, text):
+        run = server.run(text)
+        if run is None or any(robot["outcome"] != "success" for robot in run["robots"]):
             text, reply = written(task, filled=False)
         files["scenario.yaml"] = text
     return Answer("repair", files, reply, tuple(reply for _ in task.requests))
-
-
-def _works(server: Server, text: str) -> bool:
-    """Whether a scenario runs and all its robots arrive."""
-    run = server.run(text)
-    return run is not None and all(robot["outcome"] == "success" for robot in run["robots"])
 
 
 def _mended(server: Server, text: str) -> tuple[str, list[str]]:

@@ -72,12 +72,7 @@ def answer(task: Task) -> Answer:
 
 
 def written(task: Task, filled: bool = True) -> tuple[str, str]:
-    """The template that fits best, and the reply that goes with it.
-
-    Args:
-        task: The part of a case that the agent sees.
-        filled: Whether numbers of the request become values of parameters.
-    """
+    """The template that fits best, ``filled`` with numbers of the request, and the reply that goes with it."""
     request = "\n".join(task.requests)
     template = best_template(request)
     values = slots(template, request) if filled else {}

@@ -8,7 +8,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 from anyio.from_thread import BlockingPortal, start_blocking_portal
 from mcp import Client, StdioServerParameters
@@ -18,12 +18,11 @@ from mcp.types import TextContent
 __all__ = ["Server", "started"]
 
 
-class Server:
+class Server(NamedTuple):
     """Calls tools of a server that runs."""
 
-    def __init__(self, portal: BlockingPortal, client: Client) -> None:
-        self._portal = portal
-        self._client = client
+    portal: BlockingPortal
+    client: Client
 
     def validate(self, text: str) -> dict[str, Any] | None:
         """All findings of a scenario, as ``irsim validate --json`` has them; None if the tool could not say."""
@@ -34,7 +33,7 @@ class Server:
         return self._call("run_episode", scenario_yaml=text)
 
     def _call(self, tool: str, **arguments: Any) -> dict[str, Any] | None:
-        result = self._portal.call(self._client.call_tool, tool, {**arguments, "response_format": "json"})
+        result = self.portal.call(self.client.call_tool, tool, {**arguments, "response_format": "json"})
         content = result.content[0] if result.content else None
         if result.is_error or not isinstance(content, TextContent):
             return None

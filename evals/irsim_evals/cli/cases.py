@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from irsim.cli.output import console
+from irsim.common.text import plural
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.schema import schema_text
 from irsim_evals.cases.store import Instance, write_given
@@ -34,30 +35,19 @@ def cases(
     store = store_of(cases_folder, golds_folder)
     instances, bad = read_cases(chosen(wanted, store, sets=True), store, [fresh])
     if json_output:
-        rows = [
-            {
-                "id": i.case.id,
-                "title": i.case.title,
-                "category": i.case.category,
-                "level": i.case.level,
-                "prompt": i.prompt,
-            }
-            for i in instances
-        ]
+        keys = {"id", "title", "category", "level"}
+        rows = [i.case.model_dump(include=keys) | {"prompt": i.prompt} for i in instances]
         sys.stdout.write(json.dumps(rows, ensure_ascii=False) + "\n")
         return end_with(bad)
     out = console()
-    widths = [max(len(text) for text in column) for column in zip(*map(_columns, instances), strict=True)]
-    for instance in instances:
-        name, category = (text.ljust(width) for text, width in zip(_columns(instance), widths, strict=True))
-        out.print(f"{name}  level {instance.case.level}  {category}  {instance.case.title}", soft_wrap=True)
+    names, categories = [i.case.id for i in instances], [", ".join(i.case.category) for i in instances]
+    first, second = max(map(len, names)), max(map(len, categories))
+    for instance, name, category in zip(instances, names, categories, strict=True):
+        line = f"{name:{first}}  level {instance.case.level}  {category:{second}}  {instance.case.title}"
+        out.print(line, soft_wrap=True)
         if wanted:
             out.print(f"\n{instance.prompt.strip()}\n", soft_wrap=True)
     return end_with(bad)
-
-
-def _columns(instance: Instance) -> tuple[str, str]:
-    return instance.case.id, ", ".join(instance.case.category)
 
 
 def export(
@@ -82,7 +72,7 @@ def export(
         raise ArgumentError(f"{folder} holds {', '.join(taken[:3])} already", "choose another folder")
     for instance in instances:
         write_case(folder / name_of(instance.case.id, instance.name), instance)
-    sys.stdout.write(f"{len(instances)} {'case' if len(instances) == 1 else 'cases'} in {folder}\n")
+    sys.stdout.write(f"{plural(len(instances), 'case')} in {folder}\n")
     end_with(bad)
 
 

@@ -70,16 +70,13 @@ def check(
 
 def _paths(wanted: Sequence[str] | None, store: Store) -> Iterator[Path]:
     """The files that are meant, each as it can be named from the present folder."""
-    files = case_files(store)
+    files, here = case_files(store), Path.cwd()
     for word in wanted or files:
         if word not in files and (Path(word).suffix in (".yaml", ".yml") or Path(word).is_file()):
             yield Path(word)
-        else:
-            yield from (_named(files[name]) for name in ([word] if word in files else chosen([word], store)))
-
-
-def _named(path: Path) -> Path:
-    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
+            continue
+        for path in (files[name] for name in ([word] if word in files else chosen([word], store))):
+            yield path.relative_to(here) if path.is_relative_to(here) else path
 
 
 def _look(path: Path, store: Store | None) -> tuple[list[Diagnostic], str]:

@@ -39,12 +39,7 @@ def store_of(cases: Path | None, golds: Path | None) -> Store:
 
 
 def chosen(wanted: Sequence[str] | None, store: Store = PUBLISHED, *, sets: bool = False) -> list[str]:
-    """Ids of the cases that were asked for, by id, category or set; without a wish all that count.
-
-    Args:
-        wanted: Words of the user.
-        store: Where the cases lie.
-        sets: Whether cases of sets count, too.
+    """Ids of the cases that the words of a user mean, by id, category or set; without words all, perhaps with sets.
 
     Raises:
         ArgumentError: No case has that id, category or set.

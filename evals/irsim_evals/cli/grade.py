@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import signal
@@ -25,6 +26,7 @@ from irsim_evals.results import results_of, trial_of, write_results
 __all__ = ["Changes", "fingerprint", "grade"]
 
 _EXPORTED = re.compile(r"([\w-]+?)(?:@(\d{1,18}))?")
+"""Name of an exported folder: the id of a case, and the seed of a fresh instance."""
 _PERIOD_S = 0.5
 """Time between two looks at the folders with ``--watch`` [s]."""
 Fingerprint = tuple[tuple[str, int, int], ...]
@@ -108,35 +110,24 @@ def _reply(instance: Instance, folder: Path) -> str:
 
 
 def _works(folder: Path, case: str | None, store: Store) -> list[_Work]:
-    """The folders to grade.
-
-    Raises:
-        ArgumentError: There is nothing to grade.
-    """
+    """The folders to grade."""
     if not folder.is_dir():
         raise ArgumentError(f"there is no folder {folder}", "write some with irsim-evals export DIR")
     known = set(all_case_ids(store))
-    if case is not None:
-        work = _work(folder, case, known)
-        if work is None:
-            raise ArgumentError(f"no case is called {case!r}", "list them with irsim-evals cases")
-        return [work]
-    works = (_work(path, path.resolve().name, known) for path in (folder, *sorted(folder.iterdir())) if path.is_dir())
-    exported = [work for work in works if work is not None]
-    if not exported:
-        raise ArgumentError(
-            f"{folder} holds no exported case",
-            "write some with irsim-evals export DIR; for a folder with another name give --case ID",
-        )
-    return exported
-
-
-def _work(folder: Path, name: str, known: set[str]) -> _Work | None:
-    """The work that a name means: an id, or an id and the seed of an instance; None if there is no such case."""
-    match = _EXPORTED.fullmatch(name)
-    if match is None or match[1] not in known:
-        return None
-    return _Work(folder, match[1], int(match[2]) if match[2] else None)
+    if case is None:
+        paths = [path for path in (folder, *sorted(folder.iterdir())) if path.is_dir()]
+        why = f"{folder} holds no exported case"
+        fix = "write some with irsim-evals export DIR; for a folder with another name give --case ID"
+    else:
+        paths, why, fix = [folder], f"no case is called {case!r}", "list them with irsim-evals cases"
+    works = []
+    for path in paths:
+        match = _EXPORTED.fullmatch(path.resolve().name if case is None else case)
+        if match and match[1] in known:
+            works.append(_Work(path, match[1], int(match[2]) if match[2] else None))
+    if not works:
+        raise ArgumentError(why, fix)
+    return works
 
 
 class _Grader(NamedTuple):
@@ -149,39 +140,19 @@ class _Grader(NamedTuple):
     def grade(self, work: _Work) -> Verdict:
         instance = case_of(work.case, work.seed, self.store)
         verdict = grade_folder(instance, work.folder, calls=self.calls, run_programs=self.run_programs)
-        if _has_other_prompt(work.folder, instance):
-            verdict.cost.notes.append(
-                f"{PROMPT_FILE} is not the prompt of {verdict.name}; if this is the renamed folder of a fresh "
-                "instance, say which with --case ID@SEED"
-            )
+        with contextlib.suppress(OSError, ValueError):
+            if (work.folder / PROMPT_FILE).read_text(encoding="utf-8").strip() != instance.prompt.strip():
+                verdict.cost.notes.append(
+                    f"{PROMPT_FILE} is not the prompt of {verdict.name}; if this is the renamed folder of a fresh "
+                    "instance, say which with --case ID@SEED"
+                )
         return verdict
 
 
-def _has_other_prompt(folder: Path, instance: Instance) -> bool:
-    try:
-        return (folder / PROMPT_FILE).read_text(encoding="utf-8").strip() != instance.prompt.strip()
-    except (OSError, ValueError):
-        return False
-
-
 def _watch(
-    folder: Path,
-    case: str | None,
-    grader: _Grader,
-    verdicts: dict[Path, Verdict],
-    changes: Changes,
-    json_output: bool,
+    folder: Path, case: str | None, grader: _Grader, verdicts: dict[Path, Verdict], changes: Changes, json_output: bool
 ) -> None:
-    """Grade folders again after their files have changed, until Ctrl-C.
-
-    Args:
-        folder: The folder that was asked for.
-        case: Its case, if it has another name.
-        grader: Grades a folder.
-        verdicts: Folder of a case → its verdict, kept up to date.
-        changes: Finds what has changed.
-        json_output: Print JSON.
-    """
+    """Grade folders again after their files have changed, until Ctrl-C; ``verdicts`` has the last one of each."""
     stopped = threading.Event()
 
     def stop(*_: object) -> None:
@@ -225,10 +196,8 @@ def fingerprint(folder: Path) -> Fingerprint:
 class Changes:
     """Finds folders whose files have changed and then stayed the same from one look to the next.
 
-    A file that is still being written is left alone until nothing has happened to it between two looks.
-
-    Args:
-        folders: Folders whose present state is known already.
+    A file that is still being written is left alone until nothing has happened to it between two looks. The state of
+    ``folders`` at the beginning counts as known.
     """
 
     def __init__(self, folders: Iterable[Path]) -> None:
@@ -238,11 +207,8 @@ class Changes:
     def look(self, folders: Iterable[Path]) -> list[Path]:
         """The folders to grade again, new ones included."""
         now = {folder: fingerprint(folder) for folder in folders}
-        ready = [
-            folder
-            for folder, state in now.items()
-            if state != self._known.get(folder) and state == self._last.get(folder)
-        ]
+        known, last = self._known, self._last
+        ready = [folder for folder in now if known.get(folder) != now[folder] == last.get(folder)]
         self._known.update((folder, now[folder]) for folder in ready)
         self._last = now
         return ready

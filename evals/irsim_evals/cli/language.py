@@ -50,17 +50,13 @@ def predicates(
     """Say what assertions there are, and what their keys mean."""
     known = registered()
     if name is None:
-        width = max(map(len, known))
-        return _show(
-            f"{name:{width}}  {_plain(one.__doc__).split('. ')[0].rstrip('.')}." for name, one in known.items()
-        )
+        firsts = {name: _plain(one.__doc__).split(". ")[0].rstrip(".") for name, one in known.items()}
+        return _show(_beside({name: f"{first}." for name, first in firsts.items()}))
     if name not in known:
         raise ArgumentError(f"no predicate is called {name!r}", suggestion(name, known, "irsim-evals predicates"))
-    one = known[name]
-    example = examples().get(name)
-    place = (
-        ", or under assert, where it is about the start" if one.subject == "episode" and stands_at_start(one) else ""
-    )
+    one, example = known[name], examples().get(name)
+    at_start = one.subject == "episode" and stands_at_start(one)
+    place = ", or under assert, where it is about the start" * at_start
     lines = [f"{name}: {_plain(one.__doc__)}", f"It is about {_SUBJECTS[one.subject]}{place}.", "", *_keys(one), ""]
     lines += [f"example ({example[0]}): {{id: a-name, {name}: {example[1]}}}", ""] if example else []
     return _show([*lines, _NUMBERS, _MATCH, *_keys(Match)])
@@ -68,28 +64,21 @@ def predicates(
 
 def selections() -> None:
     """Say which selections of bodies every case has, and how it defines its own."""
-    width = max(map(len, BUILT_IN))
-    lines = ["Every case has these:"]
-    for name, one in BUILT_IN.items():
-        lines.append(f"  {name:{width}}  {flow(one.model_dump(exclude_defaults=True)).strip('{}') or 'every body'}")
-    lines += [
-        "",
-        "A case defines its own under select, such as boxes: {among: solids, shape: rectangle}.",
-        *_keys(Selector),
-    ]
-    _show(lines)
+    keys = {name: flow(one.model_dump(exclude_defaults=True)).strip("{}") for name, one in BUILT_IN.items()}
+    built_in = _beside({f"  {name}": text or "every body" for name, text in keys.items()})
+    own = "A case defines its own under select, such as boxes: {among: solids, shape: rectangle}."
+    _show(["Every case has these:", *built_in, "", own, *_keys(Selector)])
 
 
 def properties() -> None:
     """Say which properties of bodies selections and assertions can name, with their units and tolerances."""
-    width = max(map(len, PROPERTIES))
-    lines = []
+    texts = {}
     for name, one in PROPERTIES.items():
         relative, absolute = TOLERANCES.get(one.kind, (0.0, 0.0))
         wide = [f"{relative:.0%}"] * bool(relative) + [f"{absolute:.2g}"] * bool(absolute)
         about = _UNITS.get(name, _UNITS[one.kind]) + (f", ± {' or '.join(wide)}" if wide else "")
-        lines.append(f"{name:{width}}  {about:18}  {_plain(one.sentence)}")
-    _show(lines)
+        texts[name] = f"{about:18}  {_plain(one.sentence)}"
+    _show(_beside(texts))
 
 
 def examples() -> dict[str, tuple[str, str]]:
@@ -111,6 +100,12 @@ def examples() -> dict[str, tuple[str, str]]:
 def _line(value: Any) -> str:
     """A value as one line of YAML."""
     return yaml.safe_dump(value, default_flow_style=True, width=math.inf, sort_keys=False, allow_unicode=True).strip()
+
+
+def _beside(texts: dict[str, str]) -> list[str]:
+    """A line for each name, with its text in a second column."""
+    width = max(map(len, texts))
+    return [f"{name:{width}}  {text}" for name, text in texts.items()]
 
 
 def _show(lines: Any) -> None:

@@ -44,13 +44,13 @@ def prove(
         proof = run_proof([one.case.id for one in instances], store=store, quick=quick, seed=seed, progress=show)
     seconds = time.perf_counter() - begin
     if json_output:
-        wrong = [
+        failures = [
             {"case": t.case, "gold": t.gold, "kind": t.kind, "operator": t.operator, "what": t.what,
              "failed": [f"{o.assertion}: {o.observed}" for o in v.failed()]}
             for t, v in proof.wrong
         ]  # fmt: skip
         report = {
-            "rows": as_rows(proof), "cases": as_case_rows(proof), "wrong": wrong, "left_out": dict(proof.left_out),
+            "rows": as_rows(proof), "cases": as_case_rows(proof), "wrong": failures, "left_out": dict(proof.left_out),
             "unjudged": [f"{_said_of(trial)}: {why}" for trial, why in proof.unjudged],
             "compared": dict(proof.compared),
             "disagreements": [_words_of(item) for item in proof.disagreements],
@@ -59,11 +59,8 @@ def prove(
         sys.stdout.write(json.dumps(report, ensure_ascii=False) + "\n")
     else:
         _show(proof, seconds, quick)
-    if (
-        proof.unjudged
-        or proof.disagreements
-        or any(wrong > _BARS[name] * count for name, (wrong, count) in _rates(proof).items())
-    ):
+    wrong = any(number > _BARS[name] * count for name, (number, count) in _rates(proof).items())
+    if wrong or proof.unjudged or proof.disagreements:
         raise typer.Exit(1)
     end_with(bad)
 

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from irsim.cli.output import console, progress
+from irsim.common.text import listed
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cli.choice import CasesFolder, GoldsFolder, store_of
 
 if TYPE_CHECKING:
     from irsim_evals.report.comparison import Comparison
-    from irsim_evals.results import Results, Trial
+    from irsim_evals.results import Trial
 
 __all__ = ["compare", "report"]
 
@@ -101,77 +102,52 @@ def compare(
 
 
 def _sides(files: Sequence[Path], arms: Sequence[str]) -> list[tuple[str, list[Trial], str, list[Trial]]]:
-    """The two sides of each comparison: name and trials of the first and of the second.
-
-    Raises:
-        ArgumentError: The files and arms do not say which two sides are meant.
-    """
+    """The two sides of each comparison: name and trials of the first and of the second."""
     from irsim_evals.report.load import load_results, merge
+    from irsim_evals.report.summary import arms_of
 
     if len(files) not in (1, 2) or len(arms) > 2:
         raise ArgumentError("two sides are compared", "give two files, or one file and --arm twice")
     results = [load_results(path) for path in files]
+    known = [arms_of(result.trials) for result in results]
     if len(files) == 1:
-        names = list(arms) or _arms(results[0])
+        names = list(arms) or known[0]
         if len(names) != 2:
-            known = ", ".join(_arms(results[0]))
-            raise ArgumentError(f"{files[0]} has the arms {known}", "choose two with --arm X --arm Y")
-        a, b = (_of(results[0], name, files[0]) for name in names)
-        return [(names[0], a, names[1], b)]
-    merge(list(zip(files, results, strict=True)))
-    if arms:
-        first, second = arms[0], arms[-1]
-        a, b = _of(results[0], first, files[0]), _of(results[1], second, files[1])
-        return [(f"{first} of {files[0]}", a, f"{second} of {files[1]}", b)]
-    one, two = (_arms(result) for result in results)
-    if len(one) == len(two) == 1:
-        a, b = results[0].trials, results[1].trials
-        names = (
-            [one[0], two[0]]
-            if one != two
-            else [f"{name} of {path}" for name, path in zip(one + two, files, strict=True)]
-        )
-        return [(names[0], a, names[1], b)]
-    common = [name for name in one if name in two]
-    if not common:
-        raise ArgumentError(
-            f"{files[0]} has the arms {', '.join(one)}, and {files[1]} has {', '.join(two)}",
-            "choose one of each with --arm X --arm Y",
-        )
-    return [
-        (f"{n} of {files[0]}", _of(results[0], n, files[0]), f"{n} of {files[1]}", _of(results[1], n, files[1]))
-        for n in common
-    ]
+            why = f"{files[0]} has the arms {', '.join(known[0])}"
+            raise ArgumentError(why, "choose two with --arm X --arm Y")
+        pairs = [(names[0], names[1])]
+    else:
+        merge(list(zip(files, results, strict=True)))
+        one, two = known
+        alone = [(one[0], two[0])] if len(one) == len(two) == 1 else []
+        pairs = [(arms[0], arms[-1])] if arms else alone or [(name, name) for name in one if name in two]
+        if not pairs:
+            raise ArgumentError(
+                f"{files[0]} has the arms {', '.join(one)}, and {files[1]} has {', '.join(two)}",
+                "choose one of each with --arm X --arm Y",
+            )
+    apart = len(files) == 2 and (bool(arms) or pairs[0][0] == pairs[0][1])
 
+    def side(arm: str, place: int) -> tuple[str, list[Trial]]:
+        trials = [trial for trial in results[place].trials if trial.arm == arm]
+        if not trials:
+            raise ArgumentError(f"{files[place]} has no arm called {arm!r}", f"it has {', '.join(known[place])}")
+        return f"{arm} of {files[place]}" if apart else arm, trials
 
-def _arms(results: Results) -> list[str]:
-    from irsim_evals.report.summary import arms_of
-
-    return arms_of(results.trials)
-
-
-def _of(results: Results, arm: str, path: Path) -> list[Trial]:
-    trials = [trial for trial in results.trials if trial.arm == arm]
-    if not trials:
-        raise ArgumentError(f"{path} has no arm called {arm!r}", f"it has {', '.join(_arms(results))}")
-    return trials
+    return [(*side(first, 0), *side(second, -1)) for first, second in pairs]
 
 
 def _show(one: Comparison) -> None:
     out = console()
     for word, changes in (("BROKEN", one.broken), ("FIXED", one.fixed)):
         for change in changes:
-            shares = f" ({change.before:.0%} → {change.after:.0%} of the attempts)" if _partial(change) else ""
+            whole = {change.before, change.after} <= {0.0, 1.0}
+            shares = "" if whole else f" ({change.before:.0%} → {change.after:.0%} of the attempts)"
             out.print(f"{word:6} {change.name}: {change.title}{shares}", soft_wrap=True)
             if change.reason:
                 out.print(f"       {change.reason}", soft_wrap=True)
-    for word, side, names in (("only in", one.first, one.missing), ("only in", one.second, one.new)):
+    for side, names in ((one.first, one.missing), (one.second, one.new)):
         if names:
-            rest = f" and {len(names) - _MAX_NAMES} more" if len(names) > _MAX_NAMES else ""
-            out.print(f"{word} {side}: {', '.join(names[:_MAX_NAMES])}{rest}", soft_wrap=True)
+            out.print(f"only in {side}: {listed(names, _MAX_NAMES)}", soft_wrap=True)
     for sentence in one.sentences:
         out.print(sentence, soft_wrap=True)
-
-
-def _partial(change: object) -> bool:
-    return any(getattr(change, name) not in (0.0, 1.0) for name in ("before", "after"))

@@ -128,21 +128,13 @@ def summaries(trials: Sequence[Trial]) -> list[dict[str, Any]]:
         for trial in mine:
             cases.setdefault(trial.verdict.case, []).append(trial.verdict.strict)
         passed, attempts = sum(trial.verdict.strict for trial in mine), min(map(len, cases.values()))
-        interval = wilson(passed, len(mine))
         hat = mean_pass_hat_k([(sum(passes), len(passes)) for passes in cases.values()], attempts)
-        rows.append(
-            {
-                "arm": arm,
-                "passed": passed,
-                "trials": len(mine),
-                "share": round(interval.estimate, 4),
-                "low": round(interval.low, 4),
-                "high": round(interval.high, 4),
-                "requirements": round(sum(trial.verdict.rate for trial in mine) / len(mine), 4),
-                "attempts": attempts,
-                "pass_hat_k": round(hat, 4),
-            }
-        )
+        share, low, high = (round(value, 4) for value in wilson(passed, len(mine)))
+        met = round(sum(trial.verdict.rate for trial in mine) / len(mine), 4)
+        rows.append({
+            "arm": arm, "passed": passed, "trials": len(mine), "share": share, "low": low, "high": high,
+            "requirements": met, "attempts": attempts, "pass_hat_k": round(hat, 4),
+        })  # fmt: skip
     return rows
 
 
@@ -157,9 +149,8 @@ def verdicts_text(trials: Sequence[Trial]) -> str:
 def _show(rows: list[dict[str, Any]], path: Path) -> None:
     out = console()
     several = any(row["attempts"] > 1 for row in rows)
-    out.print(
-        f"{'arm':22} {'passed':>9}  {'share, 95 % interval':>22}  {'requirements met':>16}" + "  pass^k" * several
-    )
+    heads = f"{'arm':22} {'passed':>9}  {'share, 95 % interval':>22}  {'requirements met':>16}"
+    out.print(heads + "  pass^k" * several)
     for row in rows:
         share = f"{row['share']:.0%} ({row['low']:.0%} to {row['high']:.0%})"
         hat = f"  {row['pass_hat_k']:.0%} (k = {row['attempts']})" if several else ""
@@ -169,11 +160,7 @@ def _show(rows: list[dict[str, Any]], path: Path) -> None:
 
 
 def _arms(given: list[str] | None) -> list[str]:
-    """The arms that were asked for.
-
-    Raises:
-        ArgumentError: No arm was given, or one has another name.
-    """
+    """The arms that were asked for."""
     known = [*BASELINES, *MODEL_ARMS]
     if not given:
         raise ArgumentError("no arm says who answers", f"give --arm: {', '.join([_ALL_BASELINES, *known])}")
@@ -187,11 +174,7 @@ def _arms(given: list[str] | None) -> list[str]:
 
 
 def _sides(arms: list[str], against: str | None, skills: Path | None, instructions: Path | None) -> list[list[Side]]:
-    """The arms with their texts; those in one list answer in turn.
-
-    Raises:
-        ArgumentError: There is not one arm to be compared, or only a model reads the texts.
-    """
+    """The arms with their texts; those in one list answer in turn."""
     if against is None:
         return [[Side(arm, *((None, None) if arm in BASELINES else (skills, instructions)))] for arm in arms]
     second = _arms([against])
@@ -205,9 +188,8 @@ def _run_model(
     sides: list[Side], instances: list[Instance], options: dict[str, Any], report: Callable[[int, int], None]
 ) -> list[Trial]:
     if options["model"] is None and options["replay"] is None:
-        raise ArgumentError(
-            f"the arm {sides[0].label} needs a model", "add --model anthropic/NAME, or --replay RECORDING"
-        )
+        why = f"the arm {sides[0].label} needs a model"
+        raise ArgumentError(why, "add --model anthropic/NAME, or --replay RECORDING")
     from irsim_evals.harness.run import run_arm
 
     return run_arm(sides, instances, progress=report, **options)

@@ -61,29 +61,21 @@ def _print_table(verdicts: Sequence[Verdict], out: Console) -> None:
     table.add_column("case", overflow="fold")
     table.add_column("verdict", no_wrap=True, min_width=4)
     wide = out.width >= _WIDE
-    for heading in ("assertions", "share") if wide else ("share",):
-        table.add_column(heading, justify="right", no_wrap=True)
-    if wide:
-        table.add_column("fails first in", no_wrap=True)
-    with_cost = any(verdict.cost != Cost() for verdict in verdicts)
-    for heading in ("calls", "errors", "tokens") if with_cost else ():
-        table.add_column(heading, justify="right", no_wrap=True)
+    costs = ["calls", "errors", "tokens"] * any(verdict.cost != Cost() for verdict in verdicts)
+    for heading in (*["assertions"] * wide, "share", *["fails first in"] * wide, *costs):
+        table.add_column(heading, justify="left" if heading.startswith("fails") else "right", no_wrap=True)
     for verdict in verdicts:
         held = len(verdict.outcomes) - len(verdict.failed())
-        cost = verdict.cost
+        numbers = [getattr(verdict.cost, name) for name in costs]
         table.add_row(
             verdict.name,
             Text("PASS", style="bold green") if verdict.strict else Text("FAIL", style="bold red"),
-            *((f"{held} of {len(verdict.outcomes)}",) if wide else ()),
+            *[f"{held} of {len(verdict.outcomes)}"] * wide,
             f"{verdict.rate:.0%}",
-            *(("" if verdict.strict else verdict.reached,) if wide else ()),
-            *((_number(cost.calls), _number(cost.errors), _number(cost.tokens)) if with_cost else ()),
+            *["" if verdict.strict else verdict.reached] * wide,
+            *("?" if number is None else f"{number:,}" for number in numbers),
         )
     out.print(table)
-
-
-def _number(value: int | None) -> str:
-    return "?" if value is None else f"{value:,}"
 
 
 def _in_words(outcome: Outcome) -> str:

@@ -55,12 +55,7 @@ the request, and the files it refers to when you need them; their paths are rela
 
 
 def briefing(side: Side, folder: Path) -> str:
-    """The system message of an arm.
-
-    Args:
-        side: The arm and its texts.
-        folder: Folder of the attempt, which the MCP server calls its workspace.
-    """
+    """The system message of an arm; the MCP server calls the folder its workspace."""
     arm = side.arm
     texts = [_TASK + (_COMMAND if "+cli" in arm else _NO_PROGRAMS)]
     if arm.startswith("skill"):

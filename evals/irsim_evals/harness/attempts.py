@@ -11,21 +11,13 @@ from typing import Any
 from inspect_ai.model import ChatCompletionChoice, ChatMessageAssistant, ModelOutput, ModelUsage, get_model
 from inspect_ai.tool import ToolCall
 
+from irsim.common.hashing import digest
+from irsim.common.text import shorten_pair
 from irsim.diagnostics.report import error_codes
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.outcome import Cost, Step, Verdict
-from irsim_evals.harness.recording import (
-    Attempt,
-    Call,
-    Names,
-    RecordingEnds,
-    Turn,
-    scrubbed,
-    short_digest,
-    task_hash,
-    with_texts,
-)  # fmt: skip
+from irsim_evals.harness.recording import Attempt, Call, Names, RecordingEnds, Turn, scrubbed, task_hash, with_texts
 from irsim_evals.harness.task import SCORER, Work
 from irsim_evals.results import Trial, trial_of
 
@@ -44,14 +36,7 @@ _MAX_DRIFT = 160
 
 
 def attempt_of(sample: Any, arm: str, instance: Instance, work: Work | None) -> Attempt:
-    """The attempt that a sample of a log records, without keys and paths of the machine.
-
-    Args:
-        sample: Sample of the log.
-        arm: Name of the arm.
-        instance: The instance of the case.
-        work: Further facts about the attempt.
-    """
+    """The attempt that a sample of a log records, with what else is known of it, without keys and paths."""
     folders = [work.folder, work.folder.parent] if work is not None else []
     ended, failed = _end_of(sample, work)
     verdict = _verdict_of(sample)
@@ -72,13 +57,12 @@ def trial_from(attempt: Attempt, sample: Any, instance: Instance, model: str) ->
     verdict = None if attempt.failed else _verdict_of(sample)
     if verdict is None:
         verdict = failed_verdict(instance, None, "finished", "parse", attempt.ended or "the attempt has no result")
-    verdict.cost = attempt.cost
-    reply = attempt.replies[-1] if attempt.replies else ""
-    return trial_of(instance, verdict, attempt.arm, number=attempt.trial, model=model, reply=reply, ended=attempt.ended)
+    return attempt.trial_with(verdict, instance, model)
 
 
-def unfinished(instance: Instance, arm: str, number: int, model: str, why: str) -> Trial:
+def unfinished(instance: Instance, arm: str, number: int, model: str) -> Trial:
     """The trial of an attempt that was never made."""
+    why = "the evaluation ended before this attempt"
     verdict = failed_verdict(instance, None, "finished", "parse", why)
     return trial_of(instance, verdict, arm, number=number, model=model, ended=why)
 
@@ -125,7 +109,7 @@ def _turns_of(sample: Any, folders: Any) -> list[Turn]:
             call = calls.get(message.tool_call_id or "")
             if call is not None:
                 text = names.numbered(scrubbed(result_text(message), folders))
-                call.result_sha, call.result = short_digest(text), text[:_EXCERPT]
+                call.result_sha, call.result = digest(text)[:16], text[:_EXCERPT]
                 call.failed = message.error is not None
             continue
         turn = Turn(role=message.role, text=names.known(message.text), pictures=_pictures(message.content))
@@ -199,15 +183,8 @@ def _steps(messages: Sequence[Any]) -> list[Step]:
 
 
 def replayed_model(attempt: Attempt, model: str, folder: Path) -> Any:
-    """A model that answers as recorded, with the ids of the runs that the tools make now.
-
-    Args:
-        attempt: The recorded attempt.
-        model: Name of the recorded model.
-        folder: Folder of the attempt, for paths in arguments.
-    """
-    answers = [turn for turn in attempt.messages if turn.role == "assistant"]
-    given = iter(answers)
+    """A model that answers as recorded, with the ids of the runs that the tools make now, and paths in ``folder``."""
+    given = (turn for turn in attempt.messages if turn.role == "assistant")
 
     def placed(text: str) -> str:
         return text.replace("<folder>", str(folder))
@@ -232,22 +209,12 @@ def drift_of(recorded: Attempt, now: Attempt) -> list[str]:
     differences = []
     for number, (old, new) in enumerate(zip(before, after, strict=False), 1):
         if old.result_sha and old.result_sha != new.result_sha:
-            was, now_ = _differing(old.result, new.result)
-            differences.append(f"call {number}, {old.name}: it was {_quoted(was)}, it is {_quoted(now_)}")
+            texts = [json.dumps(call.result, ensure_ascii=False) for call in (old, new)]
+            was, found = shorten_pair(texts[0], texts[1], _MAX_DRIFT)
+            differences.append(f"call {number}, {old.name}: it was {was}, it is {found}")
     if len(before) != len(after):
         differences.append(f"{len(before)} calls were recorded, {len(after)} were made")
     return differences
-
-
-def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)
-
-
-def _differing(old: str, new: str) -> tuple[str, str]:
-    """The parts of two texts from a little before the place at which they differ."""
-    same = next((i for i, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new)))
-    begin = max(same - 20, 0)
-    return old[begin : begin + _MAX_DRIFT], new[begin : begin + _MAX_DRIFT]
 
 
 def _said_by(message: Any) -> str:

@@ -12,21 +12,12 @@ Price = tuple[float, float]
 """US dollars for a million tokens that are read, and for a million that are written."""
 
 _PRICES: dict[str, Price] = {
-    "claude-fable-5-1": (10, 50),
-    "claude-fable-5": (10, 50),
+    **dict.fromkeys(("claude-fable-5-1", "claude-fable-5"), (10, 50)),
     "claude-opus-5-5": (4, 20),
-    "claude-opus-5": (5, 25),
-    "claude-opus-4-8": (5, 25),
-    "claude-opus-4-7": (5, 25),
-    "claude-opus-4-6": (5, 25),
-    "claude-opus-4-5": (5, 25),
-    "claude-opus-4-1": (15, 75),
-    "claude-opus-4": (15, 75),
-    "claude-sonnet-5-5": (2, 10),
-    "claude-sonnet-5": (2, 10),
-    "claude-sonnet-4-6": (3, 15),
-    "claude-sonnet-4-5": (3, 15),
-    "claude-sonnet-4": (3, 15),
+    **dict.fromkeys((f"claude-opus-{version}" for version in ("5", "4-8", "4-7", "4-6", "4-5")), (5, 25)),
+    **dict.fromkeys(("claude-opus-4-1", "claude-opus-4"), (15, 75)),
+    **dict.fromkeys(("claude-sonnet-5-5", "claude-sonnet-5"), (2, 10)),
+    **dict.fromkeys((f"claude-sonnet-{version}" for version in ("4-6", "4-5", "4")), (3, 15)),
     "claude-haiku-4-5": (1, 5),
 }
 """List prices of Anthropic, as of autumn 2026. A model that is not here has no price until one is given."""
@@ -46,27 +37,21 @@ def known_price(model: str) -> Price | None:
 
 
 def set_price(model: str, price: Price | None, *, needed: bool) -> None:
-    """Tell inspect_ai the price of a model.
-
-    Args:
-        model: Name with its provider.
-        price: Price; default: the one that is known.
-        needed: Whether there must be one, since there is a limit of the cost.
+    """Tell inspect_ai the price of a model, such as ``anthropic/claude-opus-5``; default: the one that is known.
 
     Raises:
-        ArgumentError: There must be one, and it is not known.
+        ArgumentError: The price is ``needed`` for a limit of the cost, and it is not known.
     """
     from inspect_ai.model import ModelCost, ModelInfo, get_model_info, set_model_info
 
     price = price or known_price(model)
+    if price is None and needed:
+        why = f"the price of {model} is not known, so its cost cannot be limited"
+        raise ArgumentError(why, "limit the tokens instead, or give its price")
     if price is None:
-        if needed:
-            raise ArgumentError(f"the price of {model} is not known, so its cost cannot be limited",
-                                "limit the tokens instead, or give its price")  # fmt: skip
         return
     read, written = price
-    cost = ModelCost(
-        input=read, output=written, input_cache_write=read * _CACHE_WRITE, input_cache_read=read * _CACHE_READ
-    )
+    cached = {"input_cache_write": read * _CACHE_WRITE, "input_cache_read": read * _CACHE_READ}
+    cost = ModelCost(input=read, output=written, **cached)
     info: Any = get_model_info(model) or ModelInfo()
     set_model_info(model, info.model_copy(update={"cost": cost}))

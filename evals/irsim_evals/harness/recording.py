@@ -25,7 +25,7 @@ from irsim_evals.cases.store import Instance, all_case_ids, case_of, given_pictu
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.limited import grade_answer
-from irsim_evals.grader.outcome import Cost, Record, name_of
+from irsim_evals.grader.outcome import Cost, Record, Verdict, name_of
 from irsim_evals.results import Trial, trial_of
 
 __all__ = [
@@ -121,9 +121,15 @@ class Attempt(Record):
     cost: Cost = Cost()
 
     @property
-    def key(self) -> tuple[str, str, int]:
-        """Case, instance and number."""
-        return self.case, self.instance, self.trial
+    def reply(self) -> str:
+        """Last message of the agent."""
+        return self.replies[-1] if self.replies else ""
+
+    def trial_with(self, verdict: Verdict, instance: Instance, model: str) -> Trial:
+        """The trial with a verdict on what the attempt left."""
+        verdict.cost = self.cost
+        about = {"number": self.trial, "model": model, "reply": self.reply, "ended": self.ended}
+        return trial_of(instance, verdict, self.arm, **about)
 
 
 class Recording(Record):
@@ -138,16 +144,11 @@ class Recording(Record):
         return sorted(attempts, key=lambda one: one.trial)
 
 
-def short_digest(text: str) -> str:
-    """Short digest of a text."""
-    return digest(text)[:16]
-
-
 def task_hash(instance: Instance) -> str:
     """Digest of what an agent is given."""
     drawings = {name: drawing.model_dump(mode="json") for name, drawing in instance.case.drawings.items()}
     given = [instance.prompt, instance.case.turns, instance.case.files, drawings]
-    return short_digest(json.dumps(given, ensure_ascii=False, sort_keys=True))
+    return digest(json.dumps(given, ensure_ascii=False, sort_keys=True))[:16]
 
 
 def write_recording(recording: Recording, path: Path) -> None:
@@ -196,11 +197,7 @@ def find_recording(path: Path, arm: str) -> Recording:
 
 
 def grade_recording(recording: Recording, instances: Sequence[Instance] | None = None) -> list[Trial]:
-    """Grade the recorded files with the grader of today, without tools and without a model.
-
-    Args:
-        recording: The recording.
-        instances: Those to grade; default: all of the recording.
+    """Grade the recorded files of some instances, or all, with the grader of today, without tools and a model.
 
     Raises:
         ArgumentError: A case has changed or is not known, or an instance was not recorded.
@@ -209,7 +206,7 @@ def grade_recording(recording: Recording, instances: Sequence[Instance] | None =
         keys = dict.fromkeys((attempt.case, attempt.instance) for attempt in recording.attempts)
         instances = [_named(case, instance) for case, instance in keys]
     return [
-        _graded(attempt, instance, recording.header)
+        _graded(attempt, instance, recording.header.model)
         for instance, attempts in matched(recording, instances)
         for attempt in attempts
     ]
@@ -244,26 +241,15 @@ def matched(recording: Recording, instances: Iterable[Instance]) -> Iterator[tup
         yield instance, attempts
 
 
-def _graded(attempt: Attempt, instance: Instance, header: Header) -> Trial:
-    reply = attempt.replies[-1] if attempt.replies else ""
-    answer = Answer("recorded", attempt.files, reply, tuple(attempt.replies), given_pictures(instance))
+def _graded(attempt: Attempt, instance: Instance, model: str) -> Trial:
+    answer = Answer("recorded", attempt.files, attempt.reply, tuple(attempt.replies), given_pictures(instance))
     if attempt.failed:
-        verdict = failed_verdict(instance, answer, "finished", "parse", attempt.ended)
-    else:
-        verdict = grade_answer(instance, answer)
-    verdict.cost = attempt.cost
-    return trial_of(
-        instance, verdict, attempt.arm, number=attempt.trial, model=header.model, reply=reply, ended=attempt.ended
-    )
+        return attempt.trial_with(failed_verdict(instance, answer, "finished", "parse", attempt.ended), instance, model)
+    return attempt.trial_with(grade_answer(instance, answer), instance, model)
 
 
 def scrubbed(value: Any, folders: Iterable[Path | str] = ()) -> Any:
-    """A value in whose texts secrets and absolute paths are replaced.
-
-    Args:
-        value: A text, or lists and mappings of texts.
-        folders: Folders of attempts, which become ``<folder>``.
-    """
+    """A text, or lists and mappings of texts, without secrets and absolute paths; ``folders`` become ``<folder>``."""
     replaced = _replacements(folders)
 
     def clean(text: str) -> str:

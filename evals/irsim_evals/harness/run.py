@@ -17,17 +17,10 @@ from typing import Any, Literal
 from irsim.bundled.skills import find_skills
 from irsim.diagnostics.errors import ArgumentError, IrsimError
 from irsim_evals.cases.store import PUBLISHED, Instance, Store, cases_hash
+from irsim_evals.grader.outcome import name_of
 from irsim_evals.harness.arms import MODEL_ARMS, Side, skills_hash
 from irsim_evals.harness.prices import Price, set_price
-from irsim_evals.harness.recording import (
-    Attempt,
-    Header,
-    Recording,
-    find_recording,
-    grade_recording,
-    matched,
-    write_recording,
-)  # fmt: skip
+from irsim_evals.harness.recording import Header, Recording, find_recording, grade_recording, matched, write_recording
 from irsim_evals.results import Trial
 
 __all__ = ["MESSAGE_LIMIT", "RunError", "run_arm"]
@@ -42,7 +35,6 @@ ATTEMPT_TIMEOUT_S = 600
 """Time after which one request is given up and sent again."""
 MAX_TOOL_OUTPUT_BYTES = 64 * 1024
 """Length from which on the answer of a tool is cut."""
-_INSTALL = "pip install 'irsim-mcp[evals]'"
 _KEYS = ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN")
 
 
@@ -68,7 +60,9 @@ def run_arm(
     replay_mode: Literal["full", "grade"] = "full",
     store: Store = PUBLISHED,
 ) -> list[Trial]:
-    """Let a model answer instances of cases, and grade what it leaves.
+    """Let a model answer instances of cases, and grade what it leaves: one trial for each attempt, in their order.
+
+    An attempt that an error ended is a failed one that says why.
 
     Args:
         arm: One of ``MODEL_ARMS``; or sides, which answer each case one right after the other, so that what changes at
@@ -89,10 +83,6 @@ def run_arm(
         replay_mode: ``full`` calls the tools again and reports what they answer otherwise; ``grade`` only grades the
             recorded files, for which nothing needs to be installed.
         store: The folder of the cases, whose digest the recording has.
-
-    Returns:
-        One trial for each attempt, in the order of the instances. An attempt that an error ended is a failed one that
-        says why.
 
     Raises:
         KeyboardInterrupt: Ctrl-C; the recording has the attempts that were done.
@@ -131,9 +121,8 @@ def _check(sides: Sequence[Side], instances: Sequence[Instance], epochs: int) ->
         if side.instructions is not None and "+mcp" not in side.arm:
             raise ArgumentError(f"the arm {side.arm} reads no instructions of the server", "choose one with mcp")
     if len({side.label for side in sides}) < len(sides):
-        raise ArgumentError(
-            f"both sides are {sides[0].label}", "give one of them another arm, --skills or --instructions"
-        )
+        fix = "give one of them another arm, --skills or --instructions"
+        raise ArgumentError(f"both sides are {sides[0].label}", fix)
     if not instances:
         raise ArgumentError("there is no case to answer", "choose some; irsim-evals cases lists them")
     if epochs < 1:
@@ -145,9 +134,8 @@ def _require_harness() -> None:
         try:
             import_module(name)
         except ImportError:
-            raise ArgumentError(
-                f"the package {name} is not installed, or needs a newer Python than this", f"{_INSTALL}, on Python 3.11"
-            ) from None
+            why = f"the package {name} is not installed, or needs a newer Python than this"
+            raise ArgumentError(why, "pip install 'irsim-mcp[evals]', on Python 3.11") from None
 
 
 def _require_key(model: str) -> None:
@@ -171,25 +159,21 @@ def _evaluate(
     store: Store,
 ) -> list[Trial]:
     from irsim_evals.harness.attempts import attempt_of, drift_of, replayed_model, trial_from, unfinished
-    from irsim_evals.harness.task import Session, build_task, by_name
+    from irsim_evals.harness.task import Session, build_task
 
     samples = {
-        name if len(sides) == 1 else f"{name} {side.label}": (side, instance)
-        for name, instance in by_name(instances).items()
+        " ".join([name_of(instance.case.id, instance.name), *([side.label] * (len(sides) > 1))]): (side, instance)
+        for instance in instances
         for side in sides
     }
-    session = Session(
-        {name: side for name, (side, _) in samples.items()},
-        {name: instance for name, (_, instance) in samples.items()},
-        len(samples) * epochs,
-        progress,
-    )
-    recorded: dict[tuple[str, int], Attempt] = {}
+    session = Session(samples, len(samples) * epochs, progress)
+    of_side = dict(zip(sides, recordings, strict=False))
+    recorded = {
+        (name, number): attempt
+        for name, (side, instance) in (samples if recordings else {}).items()
+        for number, attempt in enumerate(of_side[side].find(instance.case.id, instance.name), 1)
+    }
     if recordings:
-        of_side = dict(zip(sides, recordings, strict=True))
-        for name, (side, instance) in samples.items():
-            for number, attempt in enumerate(of_side[side].find(instance.case.id, instance.name), 1):
-                recorded[name, number] = attempt
         session.model_of = lambda name, number, folder: replayed_model(recorded[name, number], model, folder)
     try:
         log, place = _eval(build_task(session, epochs), model, base_url, limits, log_dir, replayed=bool(recordings))
@@ -197,15 +181,14 @@ def _evaluate(
         session.close()
     done = {(str(sample.id), sample.epoch): sample for sample in log.samples or []}
     trials: dict[Side, list[Trial]] = {side: [] for side in sides}
-    attempts: dict[Side, list[Attempt]] = {side: [] for side in sides}
+    made = {side: Recording(header=_header(side, model, limits, store), attempts=[]) for side in sides}
     for name, (side, instance) in samples.items():
         for number in range(1, epochs + 1):
             if recordings and (name, number) not in recorded:
                 continue
             sample = done.get((name, number))
             if sample is None:
-                why = "the evaluation ended before this attempt"
-                trials[side].append(unfinished(instance, side.label, number, model, why))
+                trials[side].append(unfinished(instance, side.label, number, model))
                 continue
             attempt = attempt_of(sample, side.label, instance, session.works.get((name, number)))
             if log.status == "cancelled" and attempt.failed:
@@ -213,19 +196,23 @@ def _evaluate(
             trial = trial_from(attempt, sample, instance, model)
             if recordings:
                 trial.drift = drift_of(recorded[name, number], attempt)
-            attempts[side].append(attempt)
+            made[side].attempts.append(attempt)
             trials[side].append(trial)
-    for number, side in enumerate([] if recordings else sides, 1):
-        header = Header(
-            arm=side.label, model=model, date=datetime.now(timezone.utc).isoformat(timespec="seconds"), sdk=_versions(),
-            skills=skills_hash(side.skills) if side.arm.startswith("skill") else "", cases=cases_hash(store),
-            sampling={name: value for name, value in limits.items() if value},
-        )  # fmt: skip
+    for number, recording in enumerate([] if recordings else made.values(), 1):
         file = place.with_suffix(".jsonl") if len(sides) == 1 else place.with_name(f"{place.stem}-{number}.jsonl")
-        write_recording(Recording(header=header, attempts=attempts[side]), file)
+        write_recording(recording, file)
     if log.status == "cancelled":
         raise KeyboardInterrupt
     return [trial for side in sides for trial in trials[side]]
+
+
+def _header(side: Side, model: str, limits: dict[str, Any], store: Store) -> Header:
+    return Header(
+        arm=side.label, model=model, date=datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        sdk={name: metadata.version(name) for name in ("inspect_ai", "anthropic")},
+        skills=skills_hash(side.skills) if side.arm.startswith("skill") else "", cases=cases_hash(store),
+        sampling={name: value for name, value in limits.items() if value},
+    )  # fmt: skip
 
 
 def _eval(task: Any, model: str, base_url: str | None, limits: dict[str, Any], log_dir: Path, *, replayed: bool) -> Any:
@@ -257,7 +244,3 @@ def _eval(task: Any, model: str, base_url: str | None, limits: dict[str, Any], l
         why = log.error.message if log.error is not None else f"the evaluation ended as {log.status}"
         raise RunError(f"{model} could not be run: {why}")
     return log, made[-1]
-
-
-def _versions() -> dict[str, str]:
-    return {name: metadata.version(name) for name in ("inspect_ai", "anthropic")}

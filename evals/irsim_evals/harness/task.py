@@ -26,23 +26,13 @@ from inspect_ai.tool import ToolDef, ToolError, mcp_connection, mcp_server_stdio
 from irsim_evals.cases.store import Instance, given_pictures, write_given
 from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.limited import grade_folder
-from irsim_evals.grader.outcome import Verdict, name_of
+from irsim_evals.grader.outcome import Verdict
 from irsim_evals.harness.arms import Side, briefing, skill_folders
 from irsim_evals.harness.command import run_command
 from irsim_evals.harness.folder import Folder, FolderError
 from irsim_evals.harness.recording import RecordingEnds
 
-__all__ = [
-    "SCORER",
-    "Session",
-    "Work",
-    "build_task",
-    "by_name",
-    "command_tools",
-    "file_tools",
-    "picture_url",
-    "server_tools",
-]
+__all__ = ["SCORER", "Session", "Work", "build_task"]
 
 SCORER = "verdict"
 """Name of the score in the logs."""
@@ -78,8 +68,7 @@ class Session:
     """One run of an arm, or of two in turn.
 
     Attributes:
-        sides: Name of a sample → the arm that answers, and its texts.
-        instances: Name of a sample → the instance.
+        samples: Name of a sample → the arm that answers with its texts, and the instance.
         total: Number of attempts.
         progress: Called after each attempt with the number of finished attempts, and of all.
         model_of: Model for an instance, the number of an attempt and its folder; None for the evaluation's.
@@ -87,8 +76,7 @@ class Session:
         done: Number of attempts that are done.
     """
 
-    sides: dict[str, Side]
-    instances: dict[str, Instance]
+    samples: dict[str, tuple[Side, Instance]]
     total: int
     progress: Callable[[int, int], None] | None = None
     model_of: Callable[[str, int, Path], Any] | None = None
@@ -99,7 +87,7 @@ class Session:
         """Make the folder of an attempt with the files that it starts with."""
         folder = Path(tempfile.mkdtemp(prefix="irsim-agent-")).resolve() / "work"
         folder.mkdir()
-        write_given(folder, self.instances[name])
+        write_given(folder, self.samples[name][1])
         self.works[name, number] = Work(folder)
         return self.works[name, number]
 
@@ -124,10 +112,10 @@ def build_task(session: Session, epochs: int) -> Any:
     async def cleanup(state: Any) -> None:
         session.end(str(state.sample_id), state.epoch)
 
-    arms = list(dict.fromkeys(side.label for side in session.sides.values()))
+    arms = list(dict.fromkeys(side.label for side, _ in session.samples.values()))
     return Task(
         name=re.sub(r"[^\w-]+", "-", "-or-".join(arms)),
-        dataset=MemoryDataset([_sample(name, instance) for name, instance in session.instances.items()]),
+        dataset=MemoryDataset([_sample(name, instance) for name, (_, instance) in session.samples.items()]),
         solver=_agent(session),
         scorer=_scorer(session),
         cleanup=cleanup,
@@ -138,44 +126,37 @@ def build_task(session: Session, epochs: int) -> Any:
 
 
 def _sample(name: str, instance: Instance) -> Any:
-    pictures = [ContentImage(image=picture_url("image/png", content)) for content in given_pictures(instance).values()]
-    content: Any = [ContentText(text=_prompt(instance)), *pictures]
+    names = [*instance.case.files, *instance.case.drawings]
+    note = f"\n\n[Files in your folder: {', '.join(names)}]" if names else ""
+    pictures = [_picture("image/png", content) for content in given_pictures(instance).values()]
+    content: Any = [ContentText(text=instance.prompt.strip() + note), *pictures]
     metadata = {"case": instance.case.id, "instance": instance.name}
     return Sample(input=[ChatMessageUser(content=content)], id=name, metadata=metadata)
 
 
-def _prompt(instance: Instance) -> str:
-    names = [*instance.case.files, *instance.case.drawings]
-    note = f"\n\n[Files in your folder: {', '.join(names)}]" if names else ""
-    return instance.prompt.strip() + note
-
-
 def _agent(session: Session) -> Any:
-    def made() -> Any:
-        async def solve(state: Any, generate: Any) -> Any:
-            name, number = str(state.sample_id), state.epoch
-            work = session.begin(name, number)
-            model = session.model_of(name, number, work.folder) if session.model_of is not None else None
-            side = session.sides[name]
-            folder = Folder(work.folder, skill_folders(side))
-            tools = [*file_tools(folder), *command_tools(side.arm, work.folder), *server_tools(side.arm, work.folder)]
-            system = ChatMessageSystem(content=briefing(side, work.folder))
-            conversation = AgentState(messages=[system, *state.messages])
-            begin = time.perf_counter()
-            try:
-                async with mcp_connection(tools):  # the servers stay for all turns
-                    await _converse(conversation, tools, session.instances[name].case.turns, model, work)
-            except RecordingEnds as end:
-                work.ended, work.failed = str(end), end.failed
-            finally:
-                work.seconds = time.perf_counter() - begin
-                state.messages = conversation.messages
-                state.output = conversation.output
-            return state
+    async def solve(state: Any, generate: Any) -> Any:
+        name, number = str(state.sample_id), state.epoch
+        work = session.begin(name, number)
+        model = session.model_of(name, number, work.folder) if session.model_of is not None else None
+        side, instance = session.samples[name]
+        folder = Folder(work.folder, skill_folders(side))
+        tools = [*_file_tools(folder), *_command_tools(side.arm, work.folder), *_server_tools(side.arm, work.folder)]
+        system = ChatMessageSystem(content=briefing(side, work.folder))
+        conversation = AgentState(messages=[system, *state.messages])
+        begin = time.perf_counter()
+        try:
+            async with mcp_connection(tools):  # the servers stay for all turns
+                await _converse(conversation, tools, instance.case.turns, model, work)
+        except RecordingEnds as end:
+            work.ended, work.failed = str(end), end.failed
+        finally:
+            work.seconds = time.perf_counter() - begin
+            state.messages = conversation.messages
+            state.output = conversation.output
+        return state
 
-        return solve
-
-    return solver(name="irsim_agent")(made)()
+    return solver(name="irsim_agent")(lambda: solve)()
 
 
 async def _converse(conversation: Any, tools: Sequence[Any], turns: Sequence[str], model: Any, work: Work) -> None:
@@ -196,20 +177,17 @@ async def _converse(conversation: Any, tools: Sequence[Any], turns: Sequence[str
 
 
 def _scorer(session: Session) -> Any:
-    def made() -> Any:
-        async def score(state: Any, target: Any) -> Any:
-            name, number = str(state.sample_id), state.epoch
-            work, instance = session.works[name, number], session.instances[name]
-            verdict = await anyio.to_thread.run_sync(_grade, instance, work)
-            why = "; ".join(f"{one.assertion}: {one.observed}" for one in verdict.failed()[:3])
-            return Score(
-                value=1.0 if verdict.strict else 0.0, answer=work.replies[-1] if work.replies else "",
-                explanation=why or "every assertion holds", metadata={"verdict": verdict.model_dump(mode="json")},
-            )  # fmt: skip
+    async def score(state: Any, target: Any) -> Any:
+        name, number = str(state.sample_id), state.epoch
+        work, instance = session.works[name, number], session.samples[name][1]
+        verdict = await anyio.to_thread.run_sync(_grade, instance, work)
+        why = "; ".join(f"{one.assertion}: {one.observed}" for one in verdict.failed()[:3])
+        return Score(
+            value=1.0 if verdict.strict else 0.0, answer=work.replies[-1] if work.replies else "",
+            explanation=why or "every assertion holds", metadata={"verdict": verdict.model_dump(mode="json")},
+        )  # fmt: skip
 
-        return score
-
-    return scorer(metrics=[accuracy()], name=SCORER)(made)()
+    return scorer(metrics=[accuracy()], name=SCORER)(lambda: score)()
 
 
 def _grade(instance: Instance, work: Work) -> Verdict:
@@ -227,12 +205,7 @@ def _grade(instance: Instance, work: Work) -> Verdict:
         return failed_verdict(instance, None, "gradable", "parse", f"{type(error).__name__}: {error}"[:300])
 
 
-def by_name(instances: Sequence[Instance]) -> dict[str, Instance]:
-    """Instances by their names."""
-    return {name_of(instance.case.id, instance.name): instance for instance in instances}
-
-
-def file_tools(folder: Folder) -> list[Any]:
+def _file_tools(folder: Folder) -> list[Any]:
     """Tools that write, read and list the files of a folder."""
 
     async def write_file(path: str, content: str) -> str:
@@ -240,7 +213,7 @@ def file_tools(folder: Folder) -> list[Any]:
 
     async def read_file(path: str, start: int = 0) -> Any:
         content = _tried(lambda: folder.read(path, start))
-        return content if isinstance(content, str) else [ContentImage(image=picture_url(*content))]
+        return content if isinstance(content, str) else [_picture(*content)]
 
     async def list_files(path: str = ".") -> str:
         names: list[str] = _tried(lambda: folder.names(path))
@@ -260,7 +233,7 @@ def file_tools(folder: Folder) -> list[Any]:
     ]  # fmt: skip
 
 
-def command_tools(arm: str, folder: Path) -> list[Any]:
+def _command_tools(arm: str, folder: Path) -> list[Any]:
     """The command line of irsim, where the arm has it."""
 
     async def irsim(command: str) -> str:
@@ -275,28 +248,24 @@ def command_tools(arm: str, folder: Path) -> list[Any]:
     ] * ("+cli" in arm)
 
 
-def server_tools(arm: str, folder: Path) -> list[Any]:
+def _server_tools(arm: str, folder: Path) -> list[Any]:
     """The MCP servers of an arm, each a process of its own.
 
     They start in the folder above the agent's and do not import from there, so that no file of the agent takes
     the place of one of their modules. The process gets no environment but the usual paths, hence no key.
     """
-    servers = []
-    if "+mcp" in arm:
-        servers.append(_server("irsim", folder, "irsim_mcp", "--workspace", str(folder)))
+    modules = {"irsim": ["irsim_mcp", "--workspace", str(folder)]} if "+mcp" in arm else {}
     if "+distractors" in arm:
-        servers.append(_server("office", folder, "irsim_evals.harness.distractors"))
-    return servers
+        modules["office"] = ["irsim_evals.harness.distractors"]
+    return [
+        mcp_tools(mcp_server_stdio(name=name, command=sys.executable, args=["-P", "-m", *words], cwd=folder.parent))
+        for name, words in modules.items()
+    ]
 
 
-def picture_url(kind: str, data: bytes) -> str:
-    """A picture as a ``data:`` URL."""
-    return f"data:{kind};base64,{base64.b64encode(data).decode('ascii')}"
-
-
-def _server(name: str, folder: Path, module: str, *arguments: str) -> Any:
-    command = ["-P", "-m", module, *arguments]
-    return mcp_tools(mcp_server_stdio(name=name, command=sys.executable, args=command, cwd=folder.parent))
+def _picture(kind: str, data: bytes) -> Any:
+    """A picture as inspect_ai has it, with a ``data:`` URL."""
+    return ContentImage(image=f"data:{kind};base64,{base64.b64encode(data).decode('ascii')}")
 
 
 def _tried(work: Any) -> Any:

@@ -18,6 +18,7 @@ from irsim_evals.report.comparison import Comparison
 from irsim_evals.report.content import Content
 from irsim_evals.report.summary import ArmSummary, Table
 from irsim_evals.results import Trial
+from irsim_evals.statistics import Interval
 
 __all__ = ["aggregates", "as_benchmark", "comparison_data", "plain"]
 
@@ -35,9 +36,7 @@ def as_benchmark(content: Content) -> str:
             "runs_per_configuration": max(trial.number for trial in trials),
         },
         "runs": [_run(trial) for trial in trials],
-        "run_summary": {
-            arm.arm: _run_summary([trial for trial in trials if trial.arm == arm.arm]) for arm in content.arms
-        },
+        "run_summary": {one.arm: _run_summary([t for t in trials if t.arm == one.arm]) for one in content.arms},
         "notes": [text for one in content.comparisons for text in one.sentences],
     }
     return escape_marks(json.dumps(plain(data), indent=1, ensure_ascii=False)) + "\n"
@@ -52,96 +51,65 @@ def aggregates(content: Content) -> dict[str, Any]:
         "levels": _table(content.levels, names),
         "comparisons": [comparison_data(one) for one in content.comparisons],
         "failures": content.failures,
-        "proof": None
-        if content.proof is None
-        else [{"what": name, "wrong": wrong, **share._asdict()} for name, wrong, share in content.proof.totals()],
+        "proof": content.proof
+        and [{"what": name, "wrong": wrong, **share._asdict()} for name, wrong, share in content.proof.totals()],
     }
 
 
 def comparison_data(one: Comparison) -> dict[str, Any]:
-    """A comparison as JSON."""
-
-    def changes(items: Sequence[Any]) -> list[dict[str, Any]]:
-        return [
-            {"case": c.case, "instance": c.instance, "title": c.title, "before": c.before, "after": c.after,
-             "reason": c.reason}
-            for c in items
-        ]  # fmt: skip
-
-    data = {
-        "first": one.first, "second": one.second, "pairs": one.pairs, "passed": list(one.passed),
-        "fixed": changes(one.fixed), "broken": changes(one.broken), "missing": one.missing, "new": one.new,
-        "p": one.p, "difference": one.difference._asdict(), "smallest_difference": one.smallest,
-        "means_something": one.means_something, "sentence": one.sentence, "sentences": one.sentences,
-        "costs": [{**asdict(cost), "difference": cost.difference._asdict()} for cost in one.costs],
-    }  # fmt: skip
-    result: dict[str, Any] = plain(data)
+    """A comparison as JSON: what it holds, and what it says."""
+    said = {"means_something": one.means_something, "sentence": one.sentence, "sentences": one.sentences}
+    result: dict[str, Any] = plain(asdict(one) | said)
     return result
 
 
 def plain(value: Any) -> Any:
-    """A value in which numbers that JSON cannot say are null."""
+    """A value in which intervals have names, and numbers that JSON cannot say are null."""
+    if isinstance(value, Interval):
+        return plain(value._asdict())
     if isinstance(value, dict):
         return {key: plain(item) for key, item in value.items()}
-    if isinstance(value, list):
+    if isinstance(value, (list, tuple)):
         return [plain(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _arm(arm: ArmSummary) -> dict[str, Any]:
     return {
-        "models": arm.models,
-        "cases": arm.cases,
-        "trials": arm.trials.total,
-        "passed": arm.trials.passed,
-        "strict": arm.strict._asdict(),
-        "rate": arm.rate._asdict(),
-        "funnel": {stage: cell.passed for stage, cell in arm.funnel.items()},
+        "models": arm.models, "cases": arm.cases, "trials": arm.trials.total, "passed": arm.trials.passed,
+        "strict": arm.strict, "rate": arm.rate, "funnel": {stage: cell.passed for stage, cell in arm.funnel.items()},
         "pass_hat": {str(k): value for k, value in arm.pass_hat.items()},
-        "cost_known": arm.cost.known,
-        "cost": arm.cost.totals,
-        "cost_per_pass": arm.cost.per_pass,
-    }
+        "cost_known": arm.cost.known, "cost": arm.cost.totals, "cost_per_pass": arm.cost.per_pass,
+    }  # fmt: skip
 
 
 def _table(table: Table, arms: Sequence[str]) -> dict[str, dict[str, dict[str, int]]]:
-    return {
-        name: {arm: {"passed": c.passed, "total": c.total} for arm, c in zip(arms, cells, strict=True)}
-        for name, cells in table
-    }
+    return {name: {arm: asdict(cell) for arm, cell in zip(arms, cells, strict=True)} for name, cells in table}
 
 
 def _run(trial: Trial) -> dict[str, Any]:
     """One attempt, as skill-creator writes it."""
-    verdict = trial.verdict
-    passed = sum(one.passed for one in verdict.outcomes)
+    verdict, cost = trial.verdict, trial.verdict.cost
+    passed, total = sum(one.passed for one in verdict.outcomes), len(verdict.outcomes)
     return {
-        "eval_id": trial.verdict.name,
-        "eval_name": trial.title,
-        "configuration": trial.arm,
-        "run_number": trial.number,
+        "eval_id": verdict.name, "eval_name": trial.title, "configuration": trial.arm, "run_number": trial.number,
         "result": {
-            "pass_rate": verdict.rate,
-            "passed": passed,
-            "failed": len(verdict.outcomes) - passed,
-            "total": len(verdict.outcomes),
-            "time_seconds": verdict.cost.seconds,
-            "tokens": verdict.cost.tokens,
-            "tool_calls": verdict.cost.calls,
-            "errors": verdict.cost.errors,
+            "pass_rate": verdict.rate, "passed": passed, "failed": total - passed, "total": total,
+            "time_seconds": cost.seconds, "tokens": cost.tokens, "tool_calls": cost.calls, "errors": cost.errors,
         },
         "expectations": [
             {"text": f"{one.assertion}: {one.expected}", "passed": one.passed, "evidence": one.observed}
             for one in verdict.outcomes
         ],
-    }
+    }  # fmt: skip
 
 
 def _run_summary(trials: Sequence[Trial]) -> dict[str, Any]:
+    costs = [trial.verdict.cost for trial in trials]
     quantities = {
-        "pass_rate": [t.verdict.rate for t in trials],
-        "time_seconds": [t.verdict.cost.seconds for t in trials if t.verdict.cost.seconds is not None],
-        "tokens": [float(t.verdict.cost.tokens) for t in trials if t.verdict.cost.tokens is not None],
+        "pass_rate": [trial.verdict.rate for trial in trials],
+        "time_seconds": [cost.seconds for cost in costs if cost.seconds is not None],
+        "tokens": [float(cost.tokens) for cost in costs if cost.tokens is not None],
     }
     return {name: _spread(values) for name, values in quantities.items() if values}
 

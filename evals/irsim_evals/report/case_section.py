@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Sequence
 
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.outcome import NOT_REACHED, Outcome
 from irsim_evals.report.content import Content
 from irsim_evals.report.failures import category_of
-from irsim_evals.report.html_text import (
-    UNITS,
-    code,
-    difference,
-    escaped,
-    lines_of,
-    note,
-    number,
-    part,
-    percent,
-    prose,
-    slug,
-)  # fmt: skip
+from irsim_evals.report.html_text import UNITS, code, difference, escaped, lines_of, note, number, part, percent, prose
 from irsim_evals.report.marked_picture import marked_picture
 from irsim_evals.report.pictures import Gallery, main_file
+from irsim_evals.report.summary import quantities
 from irsim_evals.results import Trial
 
 __all__ = ["case_sections"]
@@ -54,7 +44,7 @@ def _case(content: Content, places: Sequence[int]) -> str:
     hard = note(f"What makes it hard: {escaped(first.hard)}") if first.hard else ""
     answers = "".join(_trial(content, place, several) for place in places)
     return (
-        f'<details class="case" id="{escaped(slug(name))}" data-categories="{escaped(" ".join(first.category))}" '
+        f'<details class="case" id="{_slug(name)}" data-categories="{escaped(" ".join(first.category))}" '
         f'data-words="{escaped(words)}"><summary><span class="id">{escaped(name, 60)}</span>'
         f'<span class="title">{escaped(first.title, 200)}</span><span class="chips">{chips}</span></summary>'
         f'<div class="body">{note(escaped(" · ".join(facts)))}{hard}'
@@ -62,13 +52,15 @@ def _case(content: Content, places: Sequence[int]) -> str:
     )
 
 
+def _slug(text: str) -> str:
+    """A text as the name of an anchor."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "-", text)[:80]
+
+
 def _chip(trial: Trial, label: str) -> str:
-    name, sign, words = escaped(label, 60), *(("✓", "passed") if trial.verdict.strict else ("✗", "failed"))
-    return f'<span class="chip {_word(trial)}" role="img" aria-label="{name}: {words}">{sign} {name}</span>'
-
-
-def _word(trial: Trial) -> str:
-    return "pass" if trial.verdict.strict else "fail"
+    word, sign, words = ("pass", "✓", "passed") if trial.verdict.strict else ("fail", "✗", "failed")
+    name = escaped(label, 60)
+    return f'<span class="chip {word}" role="img" aria-label="{name}: {words}">{sign} {name}</span>'
 
 
 def _label(trial: Trial, several: Collection[str]) -> str:
@@ -78,14 +70,15 @@ def _label(trial: Trial, several: Collection[str]) -> str:
 
 def _trial(content: Content, place: int, several: Collection[str]) -> str:
     trial, asked = content.results.trials[place], content.asked[place]
-    verdict = trial.verdict
+    verdict, word = trial.verdict, "pass" if trial.verdict.strict else "fail"
     failed = verdict.failed()
     numbers = {id(one): k for k, one in enumerate((one for one in failed if one.marks), 1)}
     scenario = main_file(trial, asked)
     paths = {one.yaml_path for one in failed if one.yaml_path}
     lines = lines_of(scenario[1], paths) if scenario else {}
     about = [f"{percent(verdict.rate)} of the requirements", "" if verdict.strict else f"fails at {verdict.reached}"]
-    about += [category_of(verdict, trial.ended) or "", _cost(trial)]
+    costs = [f"{number(value)} {UNITS.get(name, name)}" for name, value in quantities(trial).items()]
+    about += [category_of(verdict, trial.ended) or "", ", ".join(costs)]
     held = [one for one in verdict.outcomes if one.passed]
     reached = [one for one in failed if one.observed != NOT_REACHED]
     body = _verdicts(reached, numbers, lines, scenario[0] if scenario else "")
@@ -101,7 +94,7 @@ def _trial(content: Content, place: int, several: Collection[str]) -> str:
         body += f"<h3>Reply</h3>{prose(trial.reply)}"
     return (
         f'<details class="trial" data-arm="{escaped(trial.arm)}" data-passed="{int(verdict.strict)}">'
-        f'<summary><span class="chip {_word(trial)}">{_word(trial)}</span><b>{escaped(_label(trial, several), 60)}</b>'
+        f'<summary><span class="chip {word}">{word}</span><b>{escaped(_label(trial, several), 60)}</b>'
         f'<span class="note">{escaped(" · ".join(filter(None, about)))}</span></summary>'
         f'<div class="body">{body}</div></details>'
     )
@@ -112,12 +105,6 @@ def _notes(trial: Trial) -> list[str]:
     ended = [f"Ended early: {trial.ended}"] if trial.ended else []
     drift = [f"Since the recording a tool answers otherwise: {text}" for text in trial.drift]
     return [*ended, *drift, *trial.verdict.cost.notes]
-
-
-def _cost(trial: Trial) -> str:
-    fields = trial.verdict.cost.model_dump()
-    known = {name: value for name, value in fields.items() if isinstance(value, (int, float))}
-    return ", ".join(f"{number(value)} {UNITS.get(name, name)}" for name, value in known.items())
 
 
 def _verdicts(outcomes: Sequence[Outcome], numbers: dict[int, int], lines: dict[str, range], file: str) -> str:

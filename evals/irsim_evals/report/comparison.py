@@ -72,18 +72,12 @@ class CostDifference:
         return _hardly_chance(self.p, self.difference)
 
     def sentence(self, name: str) -> str:
-        """The result in words, such as ``B needs 1.2 calls fewer a case (95 %: 0.4 to 2.1)``.
-
-        Args:
-            name: Name of the second set.
-        """
+        """The result in words for a name of the second set: ``B needs 1.2 calls fewer a case (95 %: 0.4 to 2.1)``."""
         by, low, high = self.difference
         means = f"{_short(self.before)} before, {_short(self.after)} now, {self.pairs} cases"
         if not self.means_something:
-            words = (
-                f"No difference in {self.unit} that chance would not explain (95 %: {_signed(low)} to {_signed(high)}"
-            )
-            return f"{words} a case; {means})."
+            words = f"No difference in {self.unit} that chance would not explain"
+            return f"{words} (95 %: {_signed(low)} to {_signed(high)} a case; {means})."
         low, high = sorted((abs(low), abs(high)))
         word = f"{self.unit} {'more' if by > 0 else 'fewer'}"
         return f"{name} needs {_short(abs(by))} {word} a case (95 %: {_short(low)} to {_short(high)}; {means})."
@@ -101,8 +95,7 @@ class Comparison:
         missing, new: Cases that only the first has, and that only the second has.
         p: Exact p value of McNemar's test.
         difference: Mean difference of the shares of passes with its 95 % interval, drawn by family.
-        smallest: Smallest difference that is noticed with a chance of 80 % at this number of cases; None if no
-            difference is.
+        smallest_difference: The one that this number of cases shows with a chance of 80 %; None if they show none.
         costs: Differences in calls and tokens, as far as both sets know them.
         repeated: Whether there are several attempts at a case.
     """
@@ -117,7 +110,7 @@ class Comparison:
     new: list[str]
     p: float
     difference: Interval
-    smallest: float | None
+    smallest_difference: float | None
     costs: list[CostDifference]
     repeated: bool = False
 
@@ -152,47 +145,38 @@ class Comparison:
         apart = len(self.missing) + len(self.new)
         if apart:
             verdict += f"; {apart} {'case is' if apart == 1 else 'cases are'} left out, which only one of them has"
-        if self.smallest is None:
+        smallest = self.smallest_difference
+        if smallest is None:
             return f"{counts}: {verdict}. {self.pairs} cases are too few to show any difference."
-        return f"{counts}: {verdict}. {self.pairs} cases would show a difference of {100 * self.smallest:.0f} points."
+        return f"{counts}: {verdict}. {self.pairs} cases would show a difference of {100 * smallest:.0f} points."
 
 
 def compare(before: Sequence[Trial], after: Sequence[Trial], first: str, second: str) -> Comparison:
-    """Compare two sets of trials, each of one arm.
-
-    Args:
-        before, after: The trials.
-        first, second: Their names.
-    """
+    """Compare two sets of trials, each of one arm, which are called ``first`` and ``second``."""
     one, two = attempts(before), attempts(after)
     common = sorted(set(one) & set(two))
     fixed: list[Change] = []
     broken: list[Change] = []
-    passed = [0, 0]
+    shares = [(_share(one[key]), _share(two[key])) for key in common]
     differences: dict[str, list[float]] = {}
-    for key in common:
-        share_a, share_b = _share(one[key]), _share(two[key])
-        differences.setdefault(one[key][0].family, []).append(share_b - share_a)
-        passes = share_a > 0.5, share_b > 0.5
-        passed[0] += passes[0]
-        passed[1] += passes[1]
-        if passes[0] != passes[1]:
-            failing = two[key] if passes[0] else one[key]
-            change = Change(*key, one[key][0].title, share_a, share_b, _reason(failing))
-            (broken if passes[0] else fixed).append(change)
+    for key, (a, b) in zip(common, shares, strict=True):
+        differences.setdefault(one[key][0].family, []).append(b - a)
+        if (a > 0.5) != (b > 0.5):
+            change = Change(*key, one[key][0].title, a, b, _reason(two[key] if a > 0.5 else one[key]))
+            (broken if a > 0.5 else fixed).append(change)
     changed = len(fixed) + len(broken)
     return Comparison(
         first=first,
         second=second,
         pairs=len(common),
-        passed=(passed[0], passed[1]),
+        passed=(sum(a > 0.5 for a, _ in shares), sum(b > 0.5 for _, b in shares)),
         fixed=fixed,
         broken=broken,
         missing=sorted(name_of(*key) for key in set(one) - set(two)),
         new=sorted(name_of(*key) for key in set(two) - set(one)),
         p=mcnemar(len(broken), len(fixed)),
         difference=paired_bootstrap(differences),
-        smallest=smallest_difference(len(common), changed / len(common) if common else 0.0),
+        smallest_difference=smallest_difference(len(common), changed / len(common) if common else 0.0),
         costs=[cost for unit in _UNITS if (cost := _cost(unit, [(one[key], two[key]) for key in common])) is not None],
         repeated=any(len(side[key]) > 1 for side in (one, two) for key in common),
     )
@@ -236,11 +220,8 @@ def smallest_difference(pairs: int, changing: float) -> float | None:
     """Smallest difference of two pass rates that McNemar's test at 5 % notices with a chance of 80 %.
 
     Args:
-        pairs: Number of cases that both answered.
+        pairs: Number of cases that both answered; the answer is None if they are too few for any difference.
         changing: Share of the cases of which only one of both passes; a tenth where it is smaller.
-
-    Returns:
-        The difference, between 0 and 1; None if the cases are too few for any.
 
     References:
         Connor: Sample size for testing differences in proportions for the paired-sample design (1987).
@@ -248,9 +229,8 @@ def smallest_difference(pairs: int, changing: float) -> float | None:
     fewest = math.ceil(math.log2(2 / _LEVEL))  # with fewer changes, all in one direction, p is above the level
     if pairs < fewest:
         return None
-    steps = 1000
-    for step in range(1, steps + 1):
-        difference = step / steps
+    for step in range(1, 1001):
+        difference = step / 1000
         share = max(changing, _USUAL_SHARE, difference)
         spread = _Z_TEST * math.sqrt(share) + _Z_POWER * math.sqrt(share - difference**2)
         if pairs * difference**2 >= spread**2 and pairs * share >= fewest:

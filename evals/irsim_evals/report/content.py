@@ -54,18 +54,10 @@ def content_of(
     progress: Callable[[int, int], None] | None = None,
     store: Store = PUBLISHED,
 ) -> Content:
-    """Compute what a report shows.
-
-    Args:
-        results: All trials.
-        title: Title of the page.
-        proof: The proof of the grader.
-        pictures: Draw the worlds.
-        progress: Callback ``(done, total)`` for the pictures.
-        store: The cases that the trials are about.
-    """
+    """Compute what a report shows about trials at the cases of ``store``; ``progress(done, total)`` is of pictures."""
     trials, names, asked = results.trials, arms_of(results.trials), asked_of(results, store)
     by_arm = {name: [trial for trial in trials if trial.arm == name] for name in names}
+    pairs = [compare(by_arm[a], by_arm[b], a, b) for a, b in pairwise(names)]
     return Content(
         title=title,
         results=results,
@@ -73,12 +65,8 @@ def content_of(
         arms=[summarize(trials, name) for name in names],
         categories=table_by(trials, names, lambda trial: trial.category),
         levels=table_by(trials, names, lambda trial: [f"level {trial.level}"]),
-        comparisons=[
-            comparison for a, b in pairwise(names) if (comparison := compare(by_arm[a], by_arm[b], a, b)).pairs
-        ],
-        failures={
-            name: counted(category_of(one.verdict, one.ended) for one in attempts) for name, attempts in by_arm.items()
-        },
+        comparisons=[one for one in pairs if one.pairs],
+        failures={name: counted(category_of(t.verdict, t.ended) for t in own) for name, own in by_arm.items()},
         proof=proof,
         gallery=draw_trials(trials, asked, progress) if pictures else None,
     )

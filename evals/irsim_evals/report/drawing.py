@@ -31,11 +31,7 @@ _MAX_STEPS = 20_000
 
 
 def draw_answer(job: Job) -> list[Drawn] | str:
-    """The world of a scenario at its start and at the end of an episode; a sentence if it cannot be drawn.
-
-    Args:
-        job: The worlds to draw.
-    """
+    """The world of a scenario at its start and at the end of an episode; a sentence if it cannot be drawn."""
     try:
         with tempfile.TemporaryDirectory() as folder:
             return _both(job, Path(folder))

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 from irsim_evals.grader.outcome import Outcome, Step, Verdict
 
-__all__ = ["CATEGORIES", "MEANINGS", "Category", "category_of", "counted", "failure_rows"]
+__all__ = ["MEANINGS", "Category", "category_of", "counted", "failure_rows"]
 
 Category = Literal["early stop", "recovery", "discovery", "syntax", "parameters", "efficiency"]
-CATEGORIES: tuple[Category, ...] = get_args(Category)
-"""All categories, in the order in which the rule tries them."""
 MEANINGS: dict[Category, str] = {
     "early stop": "it ended without a file, without a check, or without saying what was asked",
     "recovery": "the last check showed an error, and it was not mended",
@@ -21,7 +19,7 @@ MEANINGS: dict[Category, str] = {
     "parameters": "the right things with wrong numbers, places or counts",
     "efficiency": "it passed with more than 10 calls or 8,000 tokens of calls",
 }
-"""Category → what it means."""
+"""Category → what it means, in the order in which the rule tries them."""
 MAX_CALLS = 10
 MAX_TOKENS = 8_000
 """Calls, and tokens of calls, of an answer that is not wasteful."""
@@ -37,13 +35,9 @@ _MISSING = ("answered", "finished")
 
 
 def category_of(verdict: Verdict, ended: str = "") -> Category | None:
-    """The main category of an answer; None if it passes within the budget.
+    """The main category of an answer, by the first rule that applies; None if it passes within the budget.
 
-    The first rule that applies decides.
-
-    Args:
-        verdict: The verdict on it.
-        ended: Why the attempt ended before the agent was done.
+    ``ended`` says why the attempt ended before the agent was done.
     """
     cost, steps = verdict.cost, verdict.cost.steps
     if verdict.strict:
@@ -67,7 +61,7 @@ def category_of(verdict: Verdict, ended: str = "") -> Category | None:
 def counted(categories: Iterable[Category | None]) -> dict[Category, int]:
     """Category → number of its answers; answers without a category are not counted."""
     listed = list(categories)
-    return {name: listed.count(name) for name in CATEGORIES if name in listed}
+    return {name: listed.count(name) for name in MEANINGS if name in listed}
 
 
 def failure_rows(failures: Mapping[str, Mapping[Category, int]]) -> list[list[Any]]:

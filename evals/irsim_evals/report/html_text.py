@@ -16,7 +16,6 @@ from irsim.scenario.yaml.document import Document, load_text
 
 __all__ = [
     "UNITS", "code", "difference", "escaped", "lines_of", "note", "number", "one_line", "part", "percent", "prose",
-    "slug",
 ]  # fmt: skip
 
 UNITS = {
@@ -64,12 +63,7 @@ def prose(text: str) -> str:
 
 
 def code(text: str, marked: Collection[int] = ()) -> str:
-    """A file with numbered lines.
-
-    Args:
-        text: The file.
-        marked: Numbers of the lines that are marked, from 1 on.
-    """
+    """A file with numbered lines, of which some are marked by their numbers, from 1 on."""
     lines, rest = _cut(text)
     kinds = [' class="marked"' * (number in marked) for number in range(1, len(lines) + 1)]
     parts = [f"<span{kind}>{html.escape(line)}</span>" for kind, line in zip(kinds, lines, strict=True)]
@@ -109,24 +103,20 @@ def lines_of(text: str, paths: Collection[str]) -> dict[str, range]:
 def _lines(document: Document, path: str) -> range | None:
     """Lines of a value; the line of the innermost part that is there if it is missing."""
     parts = (*document.prefix, *(int(index) if index else key for index, key in _PART.findall(path)))
-    root, first = document.tree(), document.mark(parts, key=True)
-    if root is None or first is None or not parts or str(parts[0]) not in map(str, root.children):
+    node, first = document.tree(), document.mark(parts, key=True)
+    if node is None or first is None or not parts or str(parts[0]) not in map(str, node.children):
         return None
-    return range(first.line, _last_line(root, parts, first.line) + 1)
+    for part in parts:
+        inner = next((child for key, child in node.children.items() if str(key) == str(part)), None)
+        if inner is None:
+            return range(first.line, first.line + 1)
+        node = inner
+    return range(first.line, max(first.line, _last_line(node)) + 1)
 
 
-def _last_line(node: Node | None, path: tuple[str | int, ...], first: int) -> int:
-    """Greatest line of any value below a path."""
-    for part in path:
-        if node is None:
-            return first
-        node = next((child for key, child in node.children.items() if key == part or str(key) == part), None)
-    last, open_nodes = first, [node] if node is not None else []
-    while open_nodes:
-        one = open_nodes.pop()
-        last = max(last, one.mark.line)
-        open_nodes += one.children.values()
-    return last
+def _last_line(node: Node) -> int:
+    """Greatest line of any value below a node."""
+    return max([node.mark.line, *map(_last_line, node.children.values())])
 
 
 def number(value: float) -> str:
@@ -139,11 +129,6 @@ def number(value: float) -> str:
 def percent(share: float) -> str:
     """A share as a percentage; a dash where nothing is known."""
     return "–" if math.isnan(share) else f"{share:.0%}".replace("%", " %")
-
-
-def slug(text: str) -> str:
-    """A text as the name of an anchor."""
-    return re.sub(r"[^A-Za-z0-9_-]+", "-", text)[:80]
 
 
 def _cut(text: str) -> tuple[list[str], int]:

@@ -89,10 +89,9 @@ def load_proof(path: Path) -> Proof:
     advice = "write one with irsim-evals prove --json > FILE"
     try:
         return Proof.model_validate(read_json(path))
-    except ValidationError as error:
-        raise ArgumentError(f"{path} is not the JSON of a proof: {_first(error, Proof)}", advice) from None
-    except ContentError as error:
-        raise ArgumentError(f"{path} is not the JSON of a proof: {error}", advice) from None
+    except (ValidationError, ContentError) as error:
+        why = _first(error, Proof) if isinstance(error, ValidationError) else error
+        raise ArgumentError(f"{path} is not the JSON of a proof: {why}", advice) from None
 
 
 def merge(parts: Sequence[tuple[Path, Results]]) -> Results:

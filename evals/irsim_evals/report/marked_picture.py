@@ -101,27 +101,20 @@ def _marks(drawn: Drawn, marks: Sequence[NumberedMark]) -> tuple[str, int]:
 
 
 def _shape(drawn: Drawn, points: Sequence[tuple[int, int]], numbers: Sequence[int], texts: Sequence[str]) -> str:
-    """A ring round a point, or a line, and its label."""
+    """A ring round a point, or a line; its numbers and text are beside it, on the side that has space."""
     if len(points) > 1:
-        corners = " ".join(f"{x},{y}" for x, y in points)
-        shape = [f'<polyline class="{kind}" points="{corners}"/>' for kind in ("halo", "mark")]
+        form = f'polyline points="{" ".join(f"{x},{y}" for x, y in points)}"'
     else:
-        x, y = points[0]
-        shape = [f'<circle class="{kind}" cx="{x}" cy="{y}" r="{_RING}"/>' for kind in ("halo", "mark")]
-    at = next(point for point in points if _is_inside(drawn, point))
-    return "".join(shape) + _label(drawn, at, numbers, texts)
-
-
-def _label(drawn: Drawn, at: tuple[int, int], numbers: Sequence[int], texts: Sequence[str]) -> str:
-    """Numbers and text beside a mark, on the side that has space."""
-    x, y = at
+        form = f'circle cx="{points[0][0]}" cy="{points[0][1]}" r="{_RING}"'
+    shape = [f'<{form} class="{kind}"/>' for kind in ("halo", "mark")]
+    x, y = next(point for point in points if _is_inside(drawn, point))
     more = f" +{len(texts) - 1}" if len(texts) > 1 else ""
     text = escaped(f"{', '.join(map(str, numbers))} {texts[0] if texts else ''}".strip(), _MAX_TEXT) + more
     left = x - _LEFT > drawn.size[0] / 2
     above = y - _ABOVE > 2 * _RING
     place = f'x="{x - 9 if left else x + 9}" y="{y - 10 if above else y + 20}"'
     anchor = ' text-anchor="end"' if left else ""
-    return f'<text class="marktext" {place}{anchor}>{text}</text>'
+    return f'{"".join(shape)}<text class="marktext" {place}{anchor}>{text}</text>'
 
 
 def _is_inside(drawn: Drawn, point: tuple[float, float]) -> bool:

@@ -70,12 +70,10 @@ class Gallery:
     Attributes:
         pictures: Name → picture; the name is a digest of what is drawn.
         shown: Number of a trial → names of its pictures, or a sentence that says why there are no pictures.
-        size: Size of all pictures [B].
     """
 
     pictures: dict[str, Drawn] = field(default_factory=dict)
     shown: dict[int, list[str] | str] = field(default_factory=dict)
-    size: int = 0
 
 
 def main_file(trial: Trial, asked: Instance | None) -> tuple[str, str] | None:
@@ -88,10 +86,7 @@ def draw_trials(
 ) -> Gallery:
     """Draw the worlds of all trials that could be built, at the start and at the end.
 
-    Args:
-        trials: The trials.
-        asked: Case of each trial, as far as it is known.
-        progress: Callback ``(done, total)``.
+    ``asked`` is the case of each trial as far as it is known; ``progress(done, total)`` is called after each drawing.
     """
     gallery = Gallery()
     jobs: dict[str, Job] = {}
@@ -106,22 +101,16 @@ def draw_trials(
             job = _job(trials[number], asked[number], scenario)
             wanted[number] = digest(repr(job))[:16]
             jobs[wanted[number]] = job
-    made = _draw_all(jobs, progress)
-    for number, name in wanted.items():
-        gallery.shown[number] = _keep(gallery, name, made[name])
-    return gallery
-
-
-def _draw_all(jobs: dict[str, Job], progress: Callable[[int, int], None] | None) -> dict[str, list[Drawn] | str]:
     preload("irsim_evals.report.drawing", "matplotlib.backends.backend_agg")
     made: dict[str, list[Drawn] | str] = {}
-    for name, drawn in zip(
-        jobs, run_all(_draw, [(job,) for job in jobs.values()], None, _SECONDS, "drawing"), strict=True
-    ):
+    answers = run_all(_draw, [(job,) for job in jobs.values()], None, _SECONDS, "drawing")
+    for name, drawn in zip(jobs, answers, strict=True):
         made[name] = f"There is no picture: {drawn}." if isinstance(drawn, LimitError) else drawn
         if progress is not None:
             progress(len(made), len(jobs))
-    return made
+    for number, name in wanted.items():
+        gallery.shown[number] = _keep(gallery, name, made[name])
+    return gallery
 
 
 def _draw(job: Job) -> list[Drawn] | str:
@@ -137,10 +126,8 @@ def _keep(gallery: Gallery, name: str, drawn: list[Drawn] | str) -> list[str] | 
         return drawn
     names = [f"{name}-{number}" for number in range(len(drawn))]
     if names[0] not in gallery.pictures:
-        size = sum(len(one.png) for one in drawn)
-        if gallery.size + size > _MAX_BYTES:
+        if sum(len(one.png) for one in (*gallery.pictures.values(), *drawn)) > _MAX_BYTES:
             return "The page holds no more pictures; draw this one with irsim render."
-        gallery.size += size
         gallery.pictures.update(zip(names, drawn, strict=True))
     return names
 

@@ -10,10 +10,12 @@ from irsim_evals.grader.outcome import STAGES
 from irsim_evals.results import Trial
 from irsim_evals.statistics import Interval, mean_pass_hat_k, wilson
 
-__all__ = ["ArmSummary", "Cell", "CostSummary", "Table", "arms_of", "attempts", "summarize", "table_by"]
+__all__ = ["ArmSummary", "Cell", "CostSummary", "Table", "arms_of", "attempts", "quantities", "summarize", "table_by"]
 
 MAX_COST = 1e15
 """Numbers of a cost from which on they are damaged, and are left out."""
+_MAX_K = 10
+"""Greatest number of attempts for which pass^k is shown."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,6 @@ class ArmSummary:
         funnel: Stage → share of the attempts in which nothing failed up to it.
         pass_hat: k → mean chance that k attempts at one case all pass.
         cost: Its cost.
-        seconds: Mean time of grading one answer [s].
     """
 
     arm: str
@@ -74,7 +75,6 @@ class ArmSummary:
     funnel: dict[str, Cell]
     pass_hat: dict[int, float] = field(default_factory=dict)
     cost: CostSummary = field(default_factory=lambda: CostSummary(0, {}, {}))
-    seconds: float = 0.0
 
 
 def arms_of(trials: Iterable[Trial]) -> list[str]:
@@ -91,15 +91,11 @@ def attempts(trials: Iterable[Trial]) -> dict[tuple[str, str], list[Trial]]:
 
 
 def summarize(trials: Sequence[Trial], arm: str) -> ArmSummary:
-    """One arm in numbers.
+    """One arm in numbers, from the trials of all arms.
 
     Wilson's interval is computed with the number of cases as the number of observations: several attempts at one case
     count as one observation, and a share between 0 and 1 varies less than a plain pass or failure would. So the
     intervals are rather too wide than too narrow.
-
-    Args:
-        trials: Trials of all arms.
-        arm: The arm.
     """
     own = [trial for trial in trials if trial.arm == arm]
     by_case = attempts(own)
@@ -116,22 +112,11 @@ def summarize(trials: Sequence[Trial], arm: str) -> ArmSummary:
         funnel=_funnel(own),
         pass_hat={k: mean_pass_hat_k(counts, k) for k in range(1, most + 1)},
         cost=_cost(own),
-        seconds=math.fsum(t.verdict.seconds for t in own) / len(own) if own else 0.0,
     )
 
 
-_MAX_K = 10
-"""Greatest number of attempts for which pass^k is shown."""
-
-
 def table_by(trials: Sequence[Trial], arms: Sequence[str], names: Callable[[Trial], Iterable[str]]) -> Table:
-    """Passes of each arm, by something that trials have.
-
-    Args:
-        trials: All trials.
-        arms: The columns.
-        names: Rows that a trial belongs to.
-    """
+    """Passes of each arm in rows; ``names`` are those of the rows that a trial belongs to."""
     by_row: dict[str, dict[str, list[bool]]] = {}
     for trial in trials:
         for name in names(trial):
@@ -146,25 +131,21 @@ def _mean_interval(values: Sequence[float]) -> Interval:
 
 def _funnel(trials: Sequence[Trial]) -> dict[str, Cell]:
     """How many attempts have no failure up to each stage."""
-    cells = {}
-    for place, stage in enumerate(STAGES):
-        clear = sum(t.verdict.strict or STAGES.index(t.verdict.reached) > place for t in trials)
-        cells[str(stage)] = Cell(clear, len(trials))
-    return cells
+    reached = [len(STAGES) if t.verdict.strict else STAGES.index(t.verdict.reached) for t in trials]
+    return {stage: Cell(sum(one > place for one in reached), len(trials)) for place, stage in enumerate(STAGES)}
 
 
 def _cost(trials: Sequence[Trial]) -> CostSummary:
-    known = [trial for trial in trials if any(value is not None for value in _quantities(trial).values())]
-    passed = sum(trial.verdict.strict for trial in known)
+    known = [(trial, costs) for trial in trials if (costs := quantities(trial))]
+    passed = sum(trial.verdict.strict for trial, _ in known)
     totals: dict[str, float] = {}
-    for trial in known:
-        for name, value in _quantities(trial).items():
-            if value is not None:
-                totals[name] = totals.get(name, 0) + value
+    for _, costs in known:
+        for name, value in costs.items():
+            totals[name] = totals.get(name, 0) + value
     return CostSummary(len(known), totals, {k: v / passed if passed else None for k, v in totals.items()})
 
 
-def _quantities(trial: Trial) -> dict[str, float | None]:
+def quantities(trial: Trial) -> dict[str, float]:
     """The numbers among the fields of a cost."""
     fields = trial.verdict.cost.model_dump()
-    return {k: v for k, v in fields.items() if v is None or (isinstance(v, (int, float)) and abs(v) < MAX_COST)}
+    return {k: v for k, v in fields.items() if isinstance(v, (int, float)) and abs(v) < MAX_COST}

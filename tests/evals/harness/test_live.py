@@ -281,8 +281,9 @@ def test_a_server_that_does_not_start_fails_the_attempt_with_a_reason(
 ) -> None:
     from irsim_evals.harness import task
 
-    start = task._server
-    monkeypatch.setattr(task, "_server", lambda name, folder, *_: start(name, folder, "no_such_module"))
+    start = task.mcp_server_stdio
+    missing = ["-m", "no_such_module"]
+    monkeypatch.setattr(task, "mcp_server_stdio", lambda **keys: start(**{**keys, "args": missing}))
     trial = ask(arm="skill+mcp")
     assert trial.ended.startswith("the attempt failed: ")
     assert (trial.verdict.strict, service.requests) == (False, [])
