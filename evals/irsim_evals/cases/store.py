@@ -14,7 +14,7 @@ from irsim_evals.cases.drawing import draw
 from irsim_evals.cases.expressions import substitute
 from irsim_evals.cases.model import Case
 from irsim_evals.cases.reading import folder, read_case
-from irsim_evals.grader.artefact import BINARY, CALLS_FILE, Answer, calls_of
+from irsim_evals.grader.artefact import CALLS_FILE, Answer, calls_of, from_folder
 from irsim_evals.grader.material import write_files
 
 __all__ = [
@@ -143,22 +143,13 @@ def write_given(folder: Path, instance: Instance) -> None:
 
 
 def _gold(path: Path, instance: Instance) -> Answer:
-    texts, blobs = {}, given_pictures(instance)
-    for file in sorted(path.rglob("*")):
-        name = file.relative_to(path).as_posix()
-        if name == CALLS_FILE:
-            continue
-        if file.suffix.lower() in BINARY:
-            blobs[name] = file.read_bytes()
-        elif file.is_file():
-            texts[name] = substitute(file.read_text(encoding="utf-8") + "\0", instance.values).rstrip("\0")
-    replies = tuple(texts.pop(name) for name in sorted(texts) if name.startswith("reply-"))
-    reply = texts.pop("reply.md", "")
+    left = from_folder(path, 1 + len(instance.case.turns))
+
+    def filled(text: str) -> str:
+        return str(substitute(text + "\0", instance.values)).rstrip("\0")  # a text, also if it is one expression
+
     return Answer(
-        path.name,
-        {**instance.case.files, **texts},
-        reply,
-        (*replies, reply),
-        blobs,
+        path.name, {**instance.case.files, **{name: filled(text) for name, text in left.files.items()}},
+        filled(left.reply), tuple(map(filled, left.replies)), {**given_pictures(instance), **left.blobs},
         calls=calls_of(path / CALLS_FILE)[0],
-    )
+    )  # fmt: skip

@@ -15,18 +15,8 @@ from irsim.common.angles import wrap
 from irsim.common.arguments import is_number
 
 __all__ = [
-    "TOLERANCES",
-    "UNITS",
-    "Counted",
-    "Kind",
-    "Match",
-    "Quantity",
-    "Relation",
-    "Seeds",
-    "matches",
-    "quantity",
-    "show",
-]
+    "TOLERANCES", "UNITS", "Counted", "Kind", "Match", "Quantity", "Relation", "Seeds", "matches", "quantity", "show",
+]  # fmt: skip
 
 UNITS: dict[str, float] = {
     "m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": 0.3048, "in": 0.0254, "yd": 0.9144,

@@ -193,16 +193,9 @@ def _facts(one: Material, *, layout: bool = False) -> dict[str, Any]:
     """
     scene = one.scene(_SEEDS[0])
     world = scene.world
+    keys = ("kinematics", "shape", "extent", "limits", "sensors")
     robots = [
-        [
-            body.kinematics,
-            body.shape,
-            body.extent,
-            body.limits,
-            body.sensors,
-            body.record.goal_threshold,
-            body.record.arrive_mode,
-        ]
+        [*(getattr(body, key) for key in keys), body.record.goal_threshold, body.record.arrive_mode]
         for body in scene.robots
     ]
     facts: dict[str, Any] = {

@@ -20,28 +20,11 @@ if TYPE_CHECKING:
     from irsim_evals.grader.scene import GradedScene
 
 WORLD_KINDS: dict[str, Kind] = {
-    "width": "length",
-    "height": "length",
-    "left": "length",
-    "bottom": "length",
-    "right": "length",
-    "top": "length",
-    "step_time": "time",
-    "sample_time": "time",
-    "time_limit": "time",
-    "control_mode": "name",
-    "collision_mode": "name",
-    "step_mode": "name",
-    "boundary": "name",
-    "seed": "count",
-    "fog_map": "flag",
-    "fog_map_resolution": "size",
-    "map": "name",
-    "map_file": "name",
-    "map_cell": "size",
-    "map_share": "share",
-    "map_seed": "count",
-}
+    "width": "length", "height": "length", "left": "length", "bottom": "length", "right": "length", "top": "length",
+    "step_time": "time", "sample_time": "time", "time_limit": "time", "control_mode": "name", "collision_mode": "name",
+    "step_mode": "name", "boundary": "name", "seed": "count", "fog_map": "flag", "fog_map_resolution": "size",
+    "map": "name", "map_file": "name", "map_cell": "size", "map_share": "share", "map_seed": "count",
+}  # fmt: skip
 """Property of the world → what it measures."""
 WorldProperty = Annotated[str, OneOf("property of the world", tuple(WORLD_KINDS))]
 _EDGES = ("left", "bottom", "right", "top")
@@ -206,13 +189,7 @@ class Crowding(OfBodies, ScenePredicate):
         passed = (self.cover is not None and matches(self.cover, cover, "share")) or (
             self.per_10_m2 is not None and matches(self.per_10_m2, density, "share")
         )
-        words = [
-            f"{what} {match.words()}"
-            for what, match in (("share of the area", self.cover), ("number for each 10 m²", self.per_10_m2))
-            if match is not None
-        ]
-        return Observation(
-            bool(bodies) and passed,
-            f"{self.of}: " + " or ".join(words),
-            f"share {show(cover)}, {show(density)} for each 10 m²",
-        )
+        wanted = {"share of the area": self.cover, "number for each 10 m²": self.per_10_m2}
+        words = [f"{what} {match.words()}" for what, match in wanted.items() if match is not None]
+        seen = f"share {show(cover)}, {show(density)} for each 10 m²"
+        return Observation(bool(bodies) and passed, f"{self.of}: {' or '.join(words)}", seen)
