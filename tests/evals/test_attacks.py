@@ -13,8 +13,7 @@ from irsim_evals.cases.store import Instance, case_of, golds_of
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.proof.attacks import ATTACKS
-from irsim_evals.proof.attacks_on_answers import attacks_on_answer
-from irsim_evals.proof.mutants import mutants_of
+from irsim_evals.proof.mutants import attacks_on_answer, mutants_of
 from irsim_evals.proof.operators import dump
 from irsim_evals.proof.trials import Trial, changes_of, kind_of
 from tests.evals.conftest import made_up

@@ -14,7 +14,6 @@ from pydantic import AfterValidator, Field, create_model, model_validator
 
 from irsim.options.base import problem
 from irsim_evals.cases.drawing import PICTURES, Drawing, Record
-from irsim_evals.cases.facts import FACTS, GROUPS, OTHER_FACTS
 from irsim_evals.grader.matching import Quantity, Seeds
 from irsim_evals.grader.predicates._base import Predicate, registered, stands_at_start
 from irsim_evals.grader.relations import unknown_words
@@ -22,8 +21,32 @@ from irsim_evals.grader.selection import BUILT_IN, Selection, Selections, Select
 from irsim_evals.grader.words import BehaviorName, Listed, OneOf, Regex
 
 __all__ = [
-    "Assertion", "Case", "Disposition", "EpisodePlan", "Parameter", "Pin", "Waiver",
+    "FACTS", "GROUPS", "WORLD_FACTS", "Assertion", "Case", "Disposition", "EpisodePlan", "Parameter", "Pin", "Waiver",
 ]  # fmt: skip
+
+FACTS = (
+    "count", "role", "kinematics", "shape", "size", "position", "heading", "goal", "goal_heading", "behavior",
+    "options", "forward", "backward", "sideways", "turn", "steer", "acce", "sensor_count", "sensor_kind", "range",
+    "beams", "opening", "sensor_options", "color", "name", "threshold", "passable", "wheelbase", "fov", "tags",
+    "noise", "driven", "delays", "way", "random", "cover",
+)  # fmt: skip
+"""Kinds of facts of a body; ``driven`` is whether it has a behavior, ``delays`` when it comes into the world and starts
+to move, ``way`` how its goals lie from its start, ``random`` whether its place is drawn, ``cover`` whether all that a
+fixed body covered is covered still."""
+GROUPS = {
+    "pose": ("position", "heading"),
+    "limits": ("forward", "backward", "sideways", "turn", "steer", "acce"),
+    "sensors": ("sensor_count", "sensor_kind", "range", "beams", "opening", "sensor_options"),
+}
+"""Short names for several kinds of facts."""
+WORLD_FACTS = ("size", "origin", "times", "modes", "map", "fog")
+"""Kinds of facts of the world."""
+OTHER_FACTS = {
+    "world": (*WORLD_FACTS, "mirror_x", "mirror_y"),
+    "reply": ("reply", "replies"),
+    "text": ("comments", "layout"),
+}
+"""Subject that is not a selection of bodies → its facts; a mirror is a fact that can only be free."""
 
 Disposition = Literal["build", "ask", "flag"]
 Positive = Annotated[float, Field(gt=0, le=1e6)]

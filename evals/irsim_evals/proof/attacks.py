@@ -13,8 +13,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from irsim_evals.cases.facts import FACTS
-from irsim_evals.cases.model import Case
+from irsim_evals.cases.model import FACTS, Case
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.selection import select
 from irsim_evals.proof.changes import all_free, touches

@@ -8,8 +8,7 @@ from typing import Any
 
 import shapely
 
-from irsim_evals.cases.facts import FACTS, GROUPS, WORLD_FACTS
-from irsim_evals.cases.model import Case, Pin
+from irsim_evals.cases.model import FACTS, GROUPS, WORLD_FACTS, Case, Pin
 from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.selection import select
