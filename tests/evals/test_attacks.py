@@ -13,7 +13,7 @@ from irsim_evals.cases.store import Instance, case_of, golds_of
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.proof.attacks import ATTACKS
-from irsim_evals.proof.mutants import attacks_on_answer, mutants_of
+from irsim_evals.proof.mutants import attacks_on_answer, mutants_of, mutants_of_answer
 from irsim_evals.proof.operators import dump
 from irsim_evals.proof.trials import Trial, changes_of, kind_of
 from tests.evals.conftest import made_up
@@ -120,3 +120,10 @@ def test_only_it_catches(operator: str) -> None:
         if {one.assertion for one in grade(instance, trial.answer).failed()} <= without:
             accepted.add(trial.operator)
     assert accepted == {operator}
+
+
+@pytest.mark.parametrize(("given", "number"), [(PLAIN, 0), (PLAIN + "# as it was\n", 1)])
+def test_an_edit_is_left_out_only_where_there_is_one(given: str, number: int) -> None:
+    instance = made_up(COUNT, files={"s.yaml": given})
+    made = [operator for operator, *_ in mutants_of_answer(instance, Answer("x", {"s.yaml": PLAIN}), "s.yaml")]
+    assert made.count("edit_left_out") == number

@@ -352,3 +352,8 @@ def test_an_edit_may_be_of_one_number_of_a_vector(new: str, only: list[str], obs
 def test_a_reply_makes_points(reply: str, keys: dict[str, Any], passes: bool) -> None:
     points = {"flat": ["flat", "2-?d"], "impossible": ["cannot", "impossible"]}
     assert seen(left({}, reply=reply), "says", {"points": points, **keys}).passed == passes
+
+
+@pytest.mark.parametrize(("reply", "passes"), [("", True), ("done", True), ("nothing collided", False)])
+def test_who_says_nothing_says_nothing_unwanted(reply: str, passes: bool) -> None:
+    assert seen(left({}, reply=reply), "says", {"none_of": ["nothing collided"]}).passed == passes

@@ -191,3 +191,11 @@ def test_who_comes_and_stays_where_it_is_does_not_move() -> None:
     late = "kinematics: {name: omni}, behavior: {name: dash}, appear_time: 1, vel_max: [0, 0]"
     text = f"world: {{width: 12, height: 10}}\nrobot: [{{{late}, state: [1, 5, 0], goal: [9, 5, 0]}}]\n"
     assert "moves" in failed(grade(made_up(), Answer("x", {"scenario.yaml": text})))
+
+
+@pytest.mark.parametrize(("in_vain", "wrong"), [(False, ["goals-count"]), (True, [])])
+def test_a_time_limit_that_nobody_can_meet_is_wrong_unless_the_case_is_about_one(
+    in_vain: bool, wrong: list[str]
+) -> None:
+    text = f"world: {{width: 12, height: 10, time_limit: 3}}\nrobot: [{{{OMNI}, state: [1, 5, 0], goal: [9, 5, 0]}}]\n"
+    assert failed(grade(made_up(in_vain=in_vain), Answer("x", {"scenario.yaml": text}))) == wrong

@@ -246,6 +246,8 @@ class Case(Record):
     """Selections of the bodies that others may pass through (``unobstructed``); all others must be solid."""
     late: Selections = []
     """Selections of bodies that never move and may come into the world after its start (``appear_time``)."""
+    in_vain: bool = False
+    """Whether the time limit may be too short for the way of every robot."""
     overlap: bool = False
     """Whether bodies may overlap at the start; ``overlap_free`` then says how often."""
     parameters: dict[str, Parameter] = {}

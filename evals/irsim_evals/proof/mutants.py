@@ -93,7 +93,8 @@ def mutants_of_answer(instance: Instance, answer: Answer, main: str | None) -> I
             yield "comments_dropped", "all comments", "comments", with_text(plain.lstrip("\n"))
         data = yaml.safe_load(text)
         yield "reformatted", "written by a program", "layout", with_text(yaml.safe_dump(data, sort_keys=False))
-        yield "edit_left_out", "the file as it was given", "edit", with_text(instance.case.files[main])
+        if text != instance.case.files[main]:  # else the answer is right without an edit
+            yield "edit_left_out", "the file as it was given", "edit", with_text(instance.case.files[main])
     if instance.case.python == "none":
         files = {**answer.files, "make_scenario.py": "print('world: {}')\n"}
         yield "program_left", "a program that was not asked for", "files", replace(answer, files=files)

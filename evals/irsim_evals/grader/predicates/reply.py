@@ -161,6 +161,7 @@ class Says(AnswerPredicate):
         unwanted = [pattern for pattern in self.none_of if occurs(pattern)]
         lacking = bool(self.any_of) and not any(map(occurs, self.any_of))
         made = [name for name, ways in self.points.items() if any(map(occurs, ways))]
+        asked = self.all_of or self.any_of or self.points  # whoever says nothing says nothing unwanted
         need = len(self.points) if self.at_least is None else self.at_least
         expected = (
             f"says {self.about or 'so'}, in words that the case knows ({len(self.any_of) + len(self.all_of)} ways)"
@@ -174,7 +175,7 @@ class Says(AnswerPredicate):
             )
         quoted = text if len(text) <= _MAX_QUOTED else text[:_MAX_QUOTED] + " …"
         return Observation(
-            bool(text) and not (missing or unwanted or lacking) and len(made) >= need,
+            (bool(text) or not asked) and not (missing or unwanted or lacking) and len(made) >= need,
             f"the reply {expected}",
             quoted or "no reply",
         )
