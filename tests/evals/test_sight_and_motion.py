@@ -199,3 +199,10 @@ def test_a_time_limit_that_nobody_can_meet_is_wrong_unless_the_case_is_about_one
 ) -> None:
     text = f"world: {{width: 12, height: 10, time_limit: 3}}\nrobot: [{{{OMNI}, state: [1, 5, 0], goal: [9, 5, 0]}}]\n"
     assert failed(grade(made_up(in_vain=in_vain), Answer("x", {"scenario.yaml": text}))) == wrong
+
+
+def test_the_goal_of_a_replay_is_the_end_of_the_recording() -> None:
+    replay = "behavior: {name: replay, times: [0, 5], poses: [[3, 1, 0], [8, 1, 0]]}"
+    material = hall(STANDS, f"name: one, kinematics: {{name: omni}}, {replay}, state: [3, 1, 0]")
+    assert seen(material, "each", {"of": "one", "has": {"goal_x": 8, "goals": 1}}).passed
+    assert seen(material, "arrive", {"of": "one"}, 6).passed

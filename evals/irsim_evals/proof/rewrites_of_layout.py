@@ -23,8 +23,8 @@ def one_entry_each(text: str, data: Data, scene: GradedScene) -> str | None:
             one = {key: value for key, value in entry.items() if key not in ("number", "distribution", "state", "goal")}
             if any(
                 isinstance(value, list) and value and isinstance(value[0], (list, dict))
-                for key, value in one.items()
-                if key not in ("waypoints", "sensors")
+                for key, value in ({**one, "waypoints": (one.get("waypoints") or [[]])[0]}).items()
+                if key != "sensors"
             ):
                 return None
             one["state"] = [round(value, 9) for value in body.pose]

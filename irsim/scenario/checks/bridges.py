@@ -49,4 +49,4 @@ def driven_without_goal(scenario: ResolvedScenario, bridges: Sequence[Any]) -> I
 def _goes_to_default(scenario: ResolvedScenario, record: ObjectRecord) -> bool:
     """Whether an object can move to the default goal."""
     moves = record.kinematics is not None and not record.static
-    return moves and not record.wander and not record.recorded and not scenario.has_written_goal(record)
+    return moves and not record.wander and not scenario.has_written_goal(record)

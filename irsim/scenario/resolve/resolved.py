@@ -268,7 +268,9 @@ class ResolvedScenario:
         return (record.kinematics is None or record.static) and not self.has_written_goal(record)
 
     def has_written_goal(self, record: ObjectRecord) -> bool:
-        """Whether the entry of an object gives it a goal; otherwise its goal is at most the default."""
+        """Whether the entry of an object, or what it replays, gives it a goal; otherwise it has at most the default."""
+        if record.recorded:
+            return True
         entry: Any = self.document
         for key in record.path:
             if key not in _keys(entry):

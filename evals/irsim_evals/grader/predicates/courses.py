@@ -200,7 +200,11 @@ class Crosses(OfBodies, EpisodePredicate):
         """Look for changes of side."""
         bodies = material.bodies(episode.scene, self.of)
         ways = [] if self.way_of is None else material.bodies(episode.scene, self.way_of)
-        where = f"ahead of {self.way_of}" if self.line is None else f"the line {show(list(map(list, self.line)))}"
+        where = (
+            f"{'ahead' if self.ahead else 'the way'} of {self.way_of}"
+            if self.line is None
+            else f"the line {show(list(map(list, self.line)))}"
+        )
         expected = f"{self.of} that cross {where}" + (f": {self.number.words()}" if self.number is not None else "")
         expected += f", over at least {self.spread:g} s" if self.spread else ""
         expected += "".join(f", after {time:g} s" for time in self.times or ())
