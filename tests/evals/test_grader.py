@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim_evals.cases.store import case_ids, case_of, golds_of, raw_case, substitute
+from irsim_evals.cases.store import PUBLISHED, case_ids, case_of, golds_of, raw_case, substitute
 from irsim_evals.cli.cases import schema_text
 from irsim_evals.grader import limited
 from irsim_evals.grader.artefact import Answer
@@ -65,7 +65,7 @@ def test_expressions_are_replaced_by_values() -> None:
     assert substitute("$(r) m", values, "de") == "0,25 m"
 
 
-@pytest.mark.parametrize("case_id", case_ids())
+@pytest.mark.parametrize("case_id", case_ids(sets=True))
 def test_a_case_is_named_like_its_file_and_every_instance_is_valid(case_id: str) -> None:
     assert raw_case(case_id)["id"] == case_id
     instances = [case_of(case_id, seed) for seed in range(8)]
@@ -73,7 +73,7 @@ def test_a_case_is_named_like_its_file_and_every_instance_is_valid(case_id: str)
     assert not any("$(" in instance.prompt for instance in instances)
 
 
-@pytest.mark.parametrize("case_id", some(case_ids()))
+@pytest.mark.parametrize("case_id", some(case_ids(sets=True), 6))
 def test_golds_pass_with_other_numbers(case_id: str) -> None:
     """With the numbers of the prompt, ``irsim-evals prove`` grades all of them."""
     instance = case_of(case_id, 1)
@@ -83,6 +83,13 @@ def test_golds_pass_with_other_numbers(case_id: str) -> None:
         verdict = grade(instance, gold)
         assert failures(verdict) == []
         assert verdict.strict
+
+
+def test_foreign_prompts_say_how_they_were_made() -> None:
+    foreign = [case_of(path.stem).case for path in (PUBLISHED.cases / "foreign").glob("*.yaml")]
+    assert all(len(case.made) > 40 for case in foreign)
+    assert {case.language for case in foreign} == {"en", "de", "es", "zh"}
+    assert not {case.id for case in foreign} & set(case_ids())  # they count only if their set is named
 
 
 @pytest.mark.parametrize(

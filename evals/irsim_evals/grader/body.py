@@ -155,24 +155,18 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> GradedBody:
     footprint = view.geometry if view._simulation.appeared[view.row] >= 0 else _footprint_at(view, pose)
     radius = view.radius if _is_disc(view) else None
     return GradedBody(
-        index=view.index,
-        record=record,
+        index=view.index, record=record, kinematics=kinematics, pose=pose, footprint=footprint, radius=radius,
         static=record.static or kinematics is None or (record.role == "obstacle" and options is None),
-        kinematics=kinematics,
         behavior=None if options is None else str(options.name),
         options={} if options is None else options.model_dump(mode="json"),
-        pose=pose,
         goals=[goal[:, 0].tolist() for goal in view.goals] if given and kinematics else [],
-        footprint=footprint,
-        radius=radius,
-        box=None if radius is not None else _box(footprint),
-        extent=(view.length, view.width),
+        box=None if radius is not None else _box(footprint), extent=(view.length, view.width),
         ranges=_ranges(record.kinematics, low, high, acts) if kinematics else {},
         avoided=options.target_roles if getattr(acts, "avoids", False) else None,
         sensors=[{**sensor.model_dump(mode="json"), "name": sensor.name} for sensor in record.sensors],
         color=_color(record.color),
         limits={"vel_min": low, "vel_max": high, "acce": view.acce[:, 0].tolist()},
-    )
+    )  # fmt: skip
 
 
 def _footprint_at(view: ObjectView, pose: Any) -> Any:

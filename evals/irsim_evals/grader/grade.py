@@ -105,15 +105,9 @@ def _open(instance: Instance, answer: Answer, workplace: Path, step: bool) -> Ge
             "; ".join(problems[:3]) or "so it is",
         )  # fmt: skip
     material = Material(
-        answer,
-        selectors=case.select,
-        passable=case.passable,
-        late=case.late,
-        given=case.files,
-        given_blobs=given_pictures(instance),
-        stand_ins=stand_ins(case.missing),
-        workplace=workplace,
-    )
+        answer, selectors=case.select, passable=case.passable, late=case.late, given=case.files,
+        given_blobs=given_pictures(instance), stand_ins=stand_ins(case.missing), workplace=workplace,
+    )  # fmt: skip
     if case.missing:
         made = [name for name in case.missing if name in material.names]
         yield _said(
@@ -289,18 +283,12 @@ def _guarded(look: Any) -> Observation:
 
 
 def _outcome(item: Any, observation: Observation, passed: bool) -> Outcome:
+    expected = f"{item.file}: {observation.expected}" if item.file else observation.expected
     return Outcome(
-        assertion=item.id,
-        stage=item.predicate.stage,
-        passed=passed,
-        expected=f"{item.file}: {observation.expected}" if item.file else observation.expected,
-        observed=observation.observed,
-        yaml_path=observation.yaml_path,
-        seed=observation.seed,
-        soft=item.soft,
-        weight=item.weight,
+        assertion=item.id, stage=item.predicate.stage, passed=passed, expected=expected, observed=observation.observed,
+        yaml_path=observation.yaml_path, seed=observation.seed, soft=item.soft, weight=item.weight,
         marks=[] if passed else observation.marks,
-    )
+    )  # fmt: skip
 
 
 def _said(name: str, stage: Stage, passed: bool, expected: str, observed: str) -> Outcome:

@@ -29,44 +29,29 @@ _OUT_OF_TIME = tuple(-int(getattr(signal, name)) for name in ("SIGKILL", "SIGXCP
 _MAX_PRINTED = 200_000
 """Number of characters of the output that are kept."""
 _PROGRAMS = (".py", ".ipynb", ".sh", ".js", ".pl", ".rb", ".bat", ".ps1")
-ALLOWED_MODULES = frozenset(
-    {
-        "__future__", "argparse", "collections", "csv", "dataclasses", "functools", "irsim", "itertools", "json",
-        "math", "numpy", "pathlib", "random", "statistics", "sys", "time", "typing", "yaml",
-    }
-)  # fmt: skip
+ALLOWED_MODULES = frozenset([
+    "__future__", "argparse", "collections", "csv", "dataclasses", "functools", "irsim", "itertools", "json",
+    "math", "numpy", "pathlib", "random", "statistics", "sys", "time", "typing", "yaml",
+])  # fmt: skip
 """Modules that it may import; what lies below them, too."""
-_FORBIDDEN_NAMES = frozenset(
-    {
-        "__import__", "breakpoint", "compile", "delattr", "eval", "exec", "getattr", "globals", "input", "locals",
-        "setattr", "vars",
-    }
-)  # fmt: skip
+_FORBIDDEN_NAMES = frozenset([
+    "__import__", "breakpoint", "compile", "delattr", "eval", "exec", "getattr", "globals", "input", "locals",
+    "setattr", "vars",
+])  # fmt: skip
 """Built-in functions with which a program could get round these rules."""
-_FORBIDDEN_ATTRIBUTES = {
-    **dict.fromkeys(
-        ("register_behavior", "register_group_behavior", "register_behavior_class", "register_kinematics", "register"),
-        "a runner registers no code of its own: behaviors and drives belong in the YAML",
-    ),
-    **dict.fromkeys(
-        ("set_state", "set_goal", "create_object", "create_robot", "create_obstacle", "add_object", "add_objects"),
-        "a runner does not place objects: poses and goals belong in the YAML",
-    ),
-    **dict.fromkeys(
-        (
-            "os", "subprocess", "socket", "shutil", "ctypes", "ctypeslib", "importlib", "builtins", "signal",
-            "multiprocessing", "threading", "modules", "unsafe_load", "UnsafeLoader", "Loader", "CLoader",
-        ),
-        "a runner needs no other modules",
-    ),
-    **dict.fromkeys(
-        (
-            "unlink", "rmdir", "rename", "symlink_to", "hardlink_to", "chmod", "ctypeslib", "loads_pickle",
-            "load_library",
-        ),
-        "a runner does not change files other than its results",
-    ),
+_FORBIDDEN = {
+    "a runner registers no code of its own: behaviors and drives belong in the YAML":
+        "register_behavior register_group_behavior register_behavior_class register_kinematics register",
+    "a runner does not place objects: poses and goals belong in the YAML":
+        "set_state set_goal create_object create_robot create_obstacle add_object add_objects",
+    "a runner needs no other modules":
+        "os subprocess socket shutil ctypes ctypeslib importlib builtins signal multiprocessing threading modules "
+        "unsafe_load UnsafeLoader Loader CLoader",
+    "a runner does not change files other than its results":
+        "unlink rmdir rename symlink_to hardlink_to chmod loads_pickle load_library",
 }  # fmt: skip
+"""Reason → attributes that a program may not use."""
+_FORBIDDEN_ATTRIBUTES = {name: why for why, names in _FORBIDDEN.items() for name in names.split()}
 
 
 @dataclass(frozen=True)

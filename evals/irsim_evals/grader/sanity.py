@@ -102,10 +102,8 @@ def check_scene(material: Material, scene: GradedScene, *, overlap: bool = True)
     expected = "what never moves is there from the start, and what moves comes before the end"
     outcomes.append(_outcome("present", expected, late, "all", "appear_time", scene.seed))
     if overlap:
-        overlapping = [(body, f"overlaps {other}") for body, other in overlaps(material, scene)]
-        outcomes.append(
-            _outcome("no-overlap", "nothing overlaps at the start", overlapping, "nothing", "state", scene.seed)
-        )
+        both = [(body, f"overlaps {other}") for body, other in overlaps(material, scene)]
+        outcomes.append(_outcome("no-overlap", "nothing overlaps at the start", both, "nothing", "state", scene.seed))
     return outcomes
 
 
@@ -178,14 +176,9 @@ def check_moves(episode: GradedEpisode) -> Outcome:
 
 
 def _outcome(
-    name: str,
-    expected: str,
-    odd: Sequence[tuple[GradedBody, Any]],
-    right: str,
-    key: str,
-    seed: int,
+    name: str, expected: str, odd: Sequence[tuple[GradedBody, Any]], right: str, key: str, seed: int,
     marks: list[Mark] | None = None,
-) -> Outcome:
+) -> Outcome:  # fmt: skip
     """The outcome of something that must hold for every body.
 
     Args:

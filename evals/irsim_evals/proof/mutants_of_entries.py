@@ -74,35 +74,31 @@ def key_dropped(data: Data) -> Change:
     yield from _each_key(data, _drop, "left out")
 
 
-@operator
-def kinematics_swapped(data: Data) -> Change:
-    """Another drive."""
-    for name in _built_in(KINEMATICS):
+def _swapped(data: Data, key: str, names: list[str], kept: tuple[str, ...]) -> Change:
+    """Each other name of the options under a key, without the options but for some."""
+    for name in names:
 
         def change(entry: Data, name: str = name) -> Any:
-            drive = entry.get("kinematics")
-            if not isinstance(drive, dict) or drive.get("name") == name:
+            given = entry.get(key)
+            if not isinstance(given, dict) or given.get("name") == name:
                 return False
-            drive["name"] = name
+            options = {option: given[option] for option in kept or given if option in given}
+            entry[key] = {**options, "name": name}
             return True
 
-        yield from each_entry(data, change, f"kinematics {name}")
+        yield from each_entry(data, change, f"{key} {name}")
+
+
+@operator
+def kinematics_swapped(data: Data) -> Change:
+    """Another drive, with the same options."""
+    yield from _swapped(data, "kinematics", _built_in(KINEMATICS), ())
 
 
 @operator
 def behavior_swapped(data: Data) -> Change:
     """Another behavior."""
-    for name in _built_in(BEHAVIORS):
-
-        def change(entry: Data, name: str = name) -> Any:
-            given = entry.get("behavior")
-            if not isinstance(given, dict) or given.get("name") == name:
-                return False
-            kept = {key: given[key] for key in ("wander", "loop", "range_low", "range_high") if key in given}
-            entry["behavior"] = {"name": name, **kept}
-            return True
-
-        yield from each_entry(data, change, f"behavior {name}")
+    yield from _swapped(data, "behavior", _built_in(BEHAVIORS), ("wander", "loop", "range_low", "range_high"))
 
 
 @operator

@@ -42,8 +42,9 @@ def rewrites_of(case: Case, name: str, text: str, scene: GradedScene) -> Iterato
     data = yaml.safe_load(text)
     for operator, make in {**REWRITES, **mirrors}.items():
         rewritten = make(text, plain(data), scene)
-        if rewritten is not None and rewritten != text:
-            yield operator, rewritten
+        same = text if make is block_style else dump(data)
+        if rewritten not in (None, text, same):
+            yield operator, str(rewritten)
 
 
 def rewrites_of_edit(given: str, text: str) -> Iterator[tuple[str, str]]:
@@ -136,14 +137,13 @@ def comments(text: str, data: Data, scene: GradedScene) -> str | None:
 @rewrite
 def list_or_mapping(text: str, data: Data, scene: GradedScene) -> str | None:
     """A single entry without the list around it, or with one."""
-    changed = False
     for section in ("robot", "obstacle"):
         given = data.get(section)
         if isinstance(given, list) and len(given) == 1:
-            data[section], changed = given[0], True
+            data[section] = given[0]
         elif isinstance(given, dict):
-            data[section], changed = [given], True
-    return dump(data) if changed else None
+            data[section] = [given]
+    return dump(data)
 
 
 @rewrite
@@ -191,11 +191,10 @@ def numbers_otherwise(text: str, data: Data, scene: GradedScene) -> str | None:
 @rewrite
 def entries_renamed(text: str, data: Data, scene: GradedScene) -> str | None:
     """Descriptive names where there were none."""
-    changed = False
     for number, (section, _, entry) in enumerate(entries(data)):
         if "name" not in entry and entry.get("number", 1) == 1:
-            entry["name"], changed = f"{section}-number-{number}", True
-    return dump(data) if changed else None
+            entry["name"] = f"{section}-number-{number}"
+    return dump(data)
 
 
 @rewrite
@@ -214,13 +213,11 @@ def sections_swapped(text: str, data: Data, scene: GradedScene) -> str | None:
 @rewrite
 def sensor_by_type(text: str, data: Data, scene: GradedScene) -> str | None:
     """``type`` instead of ``name`` for sensors."""
-    changed = False
     for *_, entry in entries(data):
         for sensor in entry.get("sensors") or []:
             if isinstance(sensor, dict) and "name" in sensor:
                 sensor["type"] = sensor.pop("name")
-                changed = True
-    return dump(data) if changed else None
+    return dump(data)
 
 
 @rewrite

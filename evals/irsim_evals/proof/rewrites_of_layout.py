@@ -39,18 +39,15 @@ def one_entry_each(text: str, data: Data, scene: GradedScene) -> str | None:
     return dump(made)
 
 
-def _rectangles(data: Data, change: Callable[[Data, Data], None]) -> str | None:
+def _rectangles(data: Data, change: Callable[[Data, Data], None]) -> str:
     """Apply a change to each static obstacle with the shape of a rectangle and one pose."""
-    changed = False
     for section, _, entry in entries(data):
         shape, state = entry.get("shape"), entry.get("state")
         if section != "obstacle" or "kinematics" in entry or not isinstance(shape, dict) or entry.get("number", 1) != 1:
             continue
-        if shape.get("name") != "rectangle" or not isinstance(state, list) or isinstance(state[0], list):
-            continue
-        change(entry, shape)
-        changed = True
-    return dump(data) if changed else None
+        if shape.get("name") == "rectangle" and isinstance(state, list) and not isinstance(state[0], list):
+            change(entry, shape)
+    return dump(data)
 
 
 @rewrite
@@ -87,12 +84,11 @@ def rectangles_turned(text: str, data: Data, scene: GradedScene) -> str | None:
 @rewrite
 def slightly_off(text: str, data: Data, scene: GradedScene) -> str | None:
     """Positions of robots a tenth of a millimetre off."""
-    changed = False
     for section, _, entry in entries(data):
         state = entry.get("state")
         if section == "robot" and isinstance(state, list) and state and isinstance(state[0], (int, float)):
-            state[0], changed = state[0] + 1e-4, True
-    return dump(data) if changed else None
+            state[0] += 1e-4
+    return dump(data)
 
 
 @rewrite
@@ -110,7 +106,6 @@ def polygons_as_rectangles(text: str, data: Data, scene: GradedScene) -> str | N
     """Polygons with four right angles as rectangles."""
     if scene.env.scenario.placements or len(scene.bodies) != sum(1 for _ in entries(data)):
         return None
-    changed = False
     for body, (section, _, entry) in zip(scene.bodies, entries(data), strict=True):
         shape = entry.get("shape")
         if section != "obstacle" or not isinstance(shape, dict) or shape.get("name") != "polygon":
@@ -119,8 +114,7 @@ def polygons_as_rectangles(text: str, data: Data, scene: GradedScene) -> str | N
             continue
         entry["shape"] = {"name": "rectangle", "length": round(body.box.length, 9), "width": round(body.box.width, 9)}
         entry["state"] = [*(round(value, 9) for value in body.box.center), round(body.box.heading, 9)]
-        changed = True
-    return dump(data) if changed else None
+    return dump(data)
 
 
 @rewrite

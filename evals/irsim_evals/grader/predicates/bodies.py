@@ -103,12 +103,9 @@ class Distinct(OfBodies, ScenePredicate):
         values = discernible(every_value) if self.property == "color" else self._different(every_value)
         passed = bool(bodies) and matches(self.number, len(values), "count")
         shown = ", ".join(sorted(map(show, values))[:6])
-        return Observation(
-            passed,
-            f"{self.of}: {self.number.words()} different values of {self.property}",
-            f"{len(values)}: {shown}",
-            yaml_path(bodies[0], self.property) if bodies else None,
-        )
+        expected = f"{self.of}: {self.number.words()} different values of {self.property}"
+        where = yaml_path(bodies[0], self.property) if bodies else None
+        return Observation(passed, expected, f"{len(values)}: {shown}", where)
 
     def _different(self, values: list[Any]) -> list[Any]:
         """The values without duplicates; values within the tolerance of the property count as equal."""
@@ -143,13 +140,8 @@ class Placed(OfBodies, ScenePredicate):
         observed = "".join(f"no body with {text}. " for text in words[:3])
         if odd:
             observed += "in no row: " + summary([(body, self._values(scene, body)) for body in odd])
-        return Observation(
-            False,
-            expected,
-            observed,
-            f"{odd[0].entry}.state" if odd else None,
-            marks=[Mark(points=[list(body.position)], text=body.name) for body in odd],
-        )
+        marks = [Mark(points=[list(body.position)], text=body.name) for body in odd]
+        return Observation(False, expected, observed, f"{odd[0].entry}.state" if odd else None, marks=marks)
 
     def _fits(self, scene: GradedScene, body: GradedBody, row: dict[str, Match]) -> bool:
         return all(matches(match, value_of(scene, body, key), PROPERTIES[key].kind) for key, match in row.items())

@@ -50,9 +50,8 @@ class Calls(AnswerPredicate):
         if self.number is None and self.refused is None and not self.order:
             passed = bool(counted)
         names = ", ".join(call.tool + (" (refused)" if call.error else "") for call in counted[-_MAX_NAMED:])
-        return Observation(
-            passed and self._in_order(counted), expected, f"{len(counted)}, refused {refused}: {names or 'none'}"
-        )
+        seen = f"{len(counted)}, refused {refused}: {names or 'none'}"
+        return Observation(passed and self._in_order(counted), expected, seen)
 
     def _part(self, log: tuple[Call, ...]) -> tuple[Call, ...]:
         """The part of the log that counts; without a call that writes a file, all of it lies before one."""

@@ -156,13 +156,10 @@ class OneWay(OfBodies, EpisodePredicate):
                 against.append((body, "goes the other way"))
             elif any(float(np.ptp(stay)) >= self.most * extent for stay in stays):
                 passed.append((body, "passes"))
-        return Observation(
-            not against and matches(self.number, len(passed), "count"),
-            expected,
-            f"{len(passed)}; " + summary([*against, *passed]),
-            f"{against[0][0].entry}.goal" if against else None,
-            marks=[Mark(points=[[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]], text="one way")],
-        )
+        right = not against and matches(self.number, len(passed), "count")
+        seen, where = summary([*against, *passed]), f"{against[0][0].entry}.goal" if against else None
+        marks = [Mark(points=[[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]], text="one way")]
+        return Observation(right, expected, f"{len(passed)}; {seen}", where, marks=marks)
 
 
 @register("crosses")

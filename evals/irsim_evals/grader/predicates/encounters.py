@@ -40,13 +40,10 @@ class Collisions(OfBodies, EpisodePredicate):
         hits = [(body, episode.collisions(body.name)) for body in bodies]
         bad = [(body, contacts[0]) for body, contacts in hits if contacts]
         events = [event for event in episode.events if event.kind == "collision"]
-        return Observation(
-            matches(self.number, len(bad), "count"),
-            expected,
-            f"{len(bad)}; " + summary([(body, f"{partner} at {time:.1f} s") for body, (time, partner) in bad]),
-            f"{bad[0][0].entry}.behavior" if bad else None,
-            marks=[Mark(points=[[event.x, event.y]], text=f"{event.time:.1f} s") for event in events[:5]],
-        )
+        seen = f"{len(bad)}; " + summary([(body, f"{partner} at {time:.1f} s") for body, (time, partner) in bad])
+        where = f"{bad[0][0].entry}.behavior" if bad else None
+        marks = [Mark(points=[[event.x, event.y]], text=f"{event.time:.1f} s") for event in events[:5]]
+        return Observation(matches(self.number, len(bad), "count"), expected, seen, where, marks=marks)
 
 
 @register("separation")
@@ -68,9 +65,8 @@ class Separation(EpisodePredicate):
         if not pairs:
             return Observation(False, expected, "no pair of bodies")
         least, a, b = min(((closest(episode, a, b), a, b) for a, b in pairs), key=lambda entry: entry[0])
-        return Observation(
-            matches(self.distance, least, "length"), expected, f"{a.name} and {b.name}: {show(least)} m", a.entry
-        )
+        seen = f"{a.name} and {b.name}: {show(least)} m"
+        return Observation(matches(self.distance, least, "length"), expected, seen, a.entry)
 
 
 def closest(episode: GradedEpisode, a: GradedBody, b: GradedBody) -> float:

@@ -63,11 +63,8 @@ class Files(AnswerPredicate):
             wrong += [f"{name} contains /{p}/" for p in self.lack if re.search(p, text or "")]
             wrong += [f"{name} {problem}" for problem in (_values(text or "", self.has) if self.has else ())]
         passed = matches(self.number, len(names), "count") and not wrong
-        return Observation(
-            passed,
-            f"{self.pattern}: {self.number.words()}",
-            "; ".join([f"{len(names)}: {', '.join(names[:6])}", *wrong[:3]]),
-        )
+        seen = "; ".join([f"{len(names)}: {', '.join(names[:6])}", *wrong[:3]])
+        return Observation(passed, f"{self.pattern}: {self.number.words()}", seen)
 
 
 def _new_files(material: Material, pattern: str) -> list[str]:

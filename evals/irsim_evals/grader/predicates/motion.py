@@ -58,12 +58,9 @@ class Arrive(OfBodies, EpisodePredicate):
         share = sum(there for _, there, _ in arrivals) / len(arrivals)
         wanted = self.share.eq != 0.0
         odd = [(body, text) for body, there, text in arrivals if there != wanted]
-        return Observation(
-            matches(self.share, share, "share"),
-            expected,
-            f"{share:.0%}; " + summary(odd or [(body, text) for body, _, text in arrivals]),
-            f"{(odd[0][0] if odd else bodies[0]).entry}.goal",
-        )
+        seen = summary(odd or [(body, text) for body, _, text in arrivals])
+        where = f"{(odd[0][0] if odd else bodies[0]).entry}.goal"
+        return Observation(matches(self.share, share, "share"), expected, f"{share:.0%}; {seen}", where)
 
 
 @register("moves")

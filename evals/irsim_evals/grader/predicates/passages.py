@@ -218,9 +218,8 @@ class Pocket(OfBodies, ScenePredicate):
                 return Observation(False, expected, f"{show(width)} m wide, {show(depth)} m deep")
             gap = _gap(scene, along(start, heading, back - depth / 2), heading, math.hypot(width, depth))
             if gap is not None:
-                return Observation(
-                    False, expected, "its walls leave a gap", marks=[Mark(points=[list(gap)], text="gap")]
-                )
+                marks = [Mark(points=[list(gap)], text="gap")]
+                return Observation(False, expected, "its walls leave a gap", marks=marks)
         return Observation(True, expected, "so it is")
 
     def _go_out(self, scene: GradedScene, start: Point, heading: float, back: float) -> tuple[list[float], float]:

@@ -163,22 +163,17 @@ class Says(AnswerPredicate):
         made = [name for name, ways in self.points.items() if any(map(occurs, ways))]
         asked = self.all_of or self.any_of or self.points  # whoever says nothing says nothing unwanted
         need = len(self.points) if self.at_least is None else self.at_least
-        expected = (
-            f"says {self.about or 'so'}, in words that the case knows ({len(self.any_of) + len(self.all_of)} ways)"
-        )
+        ways = len(self.any_of) + len(self.all_of)
+        expected = f"says {self.about or 'so'}, in words that the case knows ({ways} ways)"
         if unwanted:
             match = re.search(unwanted[0], text, re.IGNORECASE)
             expected += f"; it must not say {match[0]!r}" if match else ""
         if self.points:
-            expected += (
-                f", and makes {need} of the points {', '.join(self.points)}; it makes {', '.join(made) or 'none'}"
-            )
+            expected += f", and makes {need} of the points {', '.join(self.points)}; "
+            expected += f"it makes {', '.join(made) or 'none'}"
         quoted = text if len(text) <= _MAX_QUOTED else text[:_MAX_QUOTED] + " …"
-        return Observation(
-            (bool(text) or not asked) and not (missing or unwanted or lacking) and len(made) >= need,
-            f"the reply {expected}",
-            quoted or "no reply",
-        )
+        passed = (bool(text) or not asked) and not (missing or unwanted or lacking) and len(made) >= need
+        return Observation(passed, f"the reply {expected}", quoted or "no reply")
 
 
 @register("states")
@@ -202,15 +197,14 @@ class States(AnswerPredicate):
             return Observation(False, f"the reply states {self.property} of {self.of}", f"{self.of}: no body")
         value = value_of(scene, bodies[0], self.property)
         expected = f"the reply states {self.property} of {self.of} ({show(value)}) near /{self.about}/"
+        where = yaml_path(bodies[0], self.property)
         if not isinstance(value, (int, float)):
-            return Observation(
-                False, expected, f"{bodies[0].name} has no {self.property}", yaml_path(bodies[0], self.property)
-            )
+            return Observation(False, expected, f"{bodies[0].name} has no {self.property}", where)
         seen = _numbers(re.sub(r"\s+", " ", material.answer.reply), self.about)
         wanted = [value * factor for factor in self.factors]
         passed = any(abs(a - b) <= 0.02 * abs(b) + 1e-9 for a in seen for b in wanted)
         observed = ", ".join(show(number) for number in seen[:8]) or "no number there"
-        return Observation(passed, expected, observed, yaml_path(bodies[0], self.property))
+        return Observation(passed, expected, observed, where)
 
 
 def _numbers(reply: str, about: str) -> list[float]:

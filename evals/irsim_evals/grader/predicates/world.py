@@ -126,12 +126,8 @@ class Plan(ScenePredicate):
         words = [_words("missing", missing), _words("too much", surplus)]
         marks = [Mark(points=[_middle(part)], text="missing") for part in missing[:5]]
         marks += [Mark(points=[_middle(part)], text="too much") for part in surplus[:5]]
-        return Observation(
-            bool(wanted.area) and not missing and not surplus,
-            expected,
-            "; ".join(filter(None, words)) or "as in the drawing",
-            marks=marks,
-        )
+        passed = bool(wanted.area) and not missing and not surplus
+        return Observation(passed, expected, "; ".join(filter(None, words)) or "as in the drawing", marks=marks)
 
     def _wanted(self) -> Any:
         """Everything solid in the drawing."""
