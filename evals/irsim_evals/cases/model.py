@@ -247,7 +247,7 @@ class Case(Record):
     late: Selections = []
     """Selections of bodies that never move and may come into the world after its start (``appear_time``)."""
     in_vain: bool = False
-    """Whether the time limit may be too short for the way of every robot."""
+    """Whether the time limit may be too short for the way of every robot; episodes then go on beyond it."""
     overlap: bool = False
     """Whether bodies may overlap at the start; ``overlap_free`` then says how often."""
     parameters: dict[str, Parameter] = {}

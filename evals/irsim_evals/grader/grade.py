@@ -7,6 +7,7 @@ in a process with limits.
 from __future__ import annotations
 
 import functools
+import math
 import tempfile
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -77,7 +78,7 @@ def _outcomes(instance: Instance, answer: Answer, workplace: Path, whole: bool) 
         if not whole:
             yield _moves(instance, material)
         for plan in instance.case.episodes:
-            yield from _episodes(plan, material, whole)
+            yield from _episodes(plan, material, whole, instance.case.in_vain)
 
 
 def failed_verdict(instance: Instance, answer: Answer | None, assertion: str, stage: Stage, observed: str) -> Verdict:
@@ -214,12 +215,12 @@ def _in_scene(material: Material, item: Any, seed: int) -> Any:
     return look
 
 
-def _episodes(plan: Any, material: Material, whole: bool) -> Iterator[Outcome]:
+def _episodes(plan: Any, material: Material, whole: bool, in_vain: bool) -> Iterator[Outcome]:
     """Run the episodes of a plan one after the other, so that memory holds only the episodes of one seed."""
     seen: dict[str, list[Observation]] = {item.id: [] for item in plan.check}
     watched = any(item.predicate.looks for item in plan.check)
     for seed in plan.seeds:
-        run = _runs(plan, material, seed, watched)
+        run = _runs(plan, material, seed, watched, in_vain)
         for item in plan.check:
             look = _guarded(
                 lambda item=item, run=run, seed=seed: related(item.predicate, material, material.scene(seed)).observe(
@@ -240,7 +241,7 @@ def _episodes(plan: Any, material: Material, whole: bool) -> Iterator[Outcome]:
         yield _outcome(item, chosen, passed)
 
 
-def _runs(plan: Any, material: Material, seed: int, looks: bool) -> Callable[[bool], GradedEpisode]:
+def _runs(plan: Any, material: Material, seed: int, looks: bool, in_vain: bool) -> Callable[[bool], GradedEpisode]:
     """Runs the episode of a seed when it is asked for first: as written, or without any noise."""
 
     @functools.cache
@@ -253,7 +254,9 @@ def _runs(plan: Any, material: Material, seed: int, looks: bool) -> Callable[[bo
         chosen = without_noise(scenario()) if exact else scenario()
         if exact and chosen is scenario():
             return run(False)
-        seconds = min(plan.seconds, _MAX_STEPS * float(material.scene(seed).world.step_time))
+        world = material.scene(seed).world  # its time limit ends a run for everybody, unless the case is about it
+        limit = math.inf if in_vain else world.time_limit or math.inf
+        seconds = min(plan.seconds, limit, _MAX_STEPS * float(world.step_time))
         return run_episode(chosen, seed, seconds, looks=looks)
 
     return run

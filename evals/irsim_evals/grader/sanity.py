@@ -74,7 +74,7 @@ def check_scene(material: Material, scene: GradedScene, *, overlap: bool = True)
     moving = [body for body in scene.bodies if not body.static or body.role == "robot"]
 
     def outside(x: float, y: float) -> bool:
-        return not (x0 - 1e-9 <= x <= x1 + 1e-9 and y0 - 1e-9 <= y <= y1 + 1e-9)
+        return not (x0 - _TOUCH <= x <= x1 + _TOUCH and y0 - _TOUCH <= y <= y1 + _TOUCH)
 
     there = shapely.box(x0, y0, x1, y1)
     starts = [(body, list(body.pose[:2])) for body in moving if outside(body.pose[0], body.pose[1])]

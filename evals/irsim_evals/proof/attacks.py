@@ -139,7 +139,7 @@ def late_bodies(data: Data) -> Change:
         yield from together(data, change, f"{key} 1000")
 
 
-@attack_on_entries("5 s later", "crosses.times", "sees.first")
+@attack_on_entries("5 s later", "crosses.times")
 def later(entry: Data) -> Any:
     """Bodies that start some seconds later."""
     if not _moves(entry):

@@ -16,10 +16,7 @@ from irsim_evals.proof.operators import REWRITES, Data, dump, entries, plain, re
 
 __all__ = ["rewrites_of", "rewrites_of_edit"]
 
-_MIRRORS = {
-    "mirror_x": rewrites_of_layout.mirrored_left_right,
-    "mirror_y": rewrites_of_layout.mirrored_up_down,
-}
+_MIRRORS = {"mirror_x": rewrites_of_layout.mirrored_left_right, "mirror_y": rewrites_of_layout.mirrored_up_down}
 """Fact of the world that a case leaves free → rewrite."""
 _NUMBER = re.compile(r"(?<![\w.#\"'-])(-?\d+(?:\.\d+)?)(?![\w.:\"'])")
 _KEY = re.compile(r"(?<![\w\"'])([a-z_]+): ")
@@ -35,7 +32,7 @@ def rewrites_of(case: Case, name: str, text: str, scene: GradedScene) -> Iterato
         scene: Its world with the first seed.
     """
     if name in case.files:  # an edit is about the text, too
-        yield from rewrites_of_edit(case.files[name], text)
+        yield from rewrites_of_edit(case.files[name], text) if text != case.files[name] else ()
         return
     free = {fact for pin in case.free if pin.of == "world" for fact in pin.facts}
     mirrors = {mirror.__name__: mirror for fact, mirror in _MIRRORS.items() if fact in free}
