@@ -25,7 +25,7 @@ MIN_REWRITES, MIN_MUTANTS = 10, 30
 
 def prove(
     wanted: Wanted = None,
-    quick: Annotated[bool, typer.Option(help="All golds, and a random tenth of the rest.")] = False,
+    quick: Annotated[bool, typer.Option(help="All golds, and a random twentieth of the rest.")] = False,
     seed: Annotated[int, typer.Option(help="Seed of the choice and of the fresh instances.")] = 0,
     json_output: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     cases_folder: CasesFolder = None,

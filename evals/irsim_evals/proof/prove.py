@@ -19,7 +19,7 @@ __all__ = ["Disagreement", "Proof", "as_case_rows", "as_rows", "prove", "tried"]
 
 _SECOND_SHARE = 0.25
 """Share of the trials that are also given to the second implementation."""
-_QUICK_SHARE = 0.1
+_QUICK_SHARE = 0.05
 """Share of rewrites, mutants and null agents that the quick proof tries."""
 
 
@@ -99,7 +99,7 @@ def prove(
     Args:
         ids: Cases; default: all.
         store: Where they and their golds lie.
-        quick: All golds, and a random tenth of the rest.
+        quick: All golds, and a random twentieth of the rest.
         seed: Seed of the choice, and of one fresh instance of each case.
         progress: Callback ``(done, total)``.
     """
