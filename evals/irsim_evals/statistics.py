@@ -53,7 +53,7 @@ def pass_hat_k(passed: int, total: int, k: int) -> float:
 
 
 def mean_pass_hat_k(attempts: Iterable[tuple[int, int]], k: int) -> float:
-    """Mean of pass^k over cases with ``(passed, total)`` attempts, of which at least ``k``; NaN if there is none."""
+    """Mean of pass^k over cases with ``(passed, total)`` attempts, of which at least ``k``; NaN without cases."""
     values = [pass_hat_k(passed, total, k) for passed, total in attempts if total >= k]
     return math.fsum(values) / len(values) if values else math.nan
 

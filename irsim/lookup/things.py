@@ -213,6 +213,19 @@ THINGS: dict[str, Guide] = {
             *("keeps going", "non-stop", "nonstop", "endlos", "unendlich", "para siempre", "sin fin", "永远", "无限"),
         ),
     ),
+    "waiting": Guide(
+        "who waits, waits by the clock",
+        "Who sets off later has start_time. On the way, behavior replay stands still between two equal poses: by the "
+        "clock, whoever is there; orca and footprint_orca let others pass by themselves. Who has arrived stays there; "
+        "the run ends when all robots have, unless it is run until time_limit.",
+        "obstacle: {name: pedestrian, kinematics: {name: omni}, shape: {name: circle, radius: 0.25},\n"
+        "           state: [5, 1, 1.5708], behavior: {name: replay, times: [0, 2, 5, 8],\n"
+        "           poses: [[5, 1], [5, 3], [5, 3], [5, 6]]}}",
+        (
+            *("wait", "pause", "dwell", "stands still", "stay put", "warten", "wartet", "pausieren"),
+            *("esperar", "espera", "pausa", "等待", "等一下", "停留", "暂停", "站住"),
+        ),
+    ),
     "conveyor": Guide(
         "no conveyors, doors that open, cranes or turntables",
         f"{_NO} machines that move other things or switch. A thing that moves by itself is an obstacle with kinematics "

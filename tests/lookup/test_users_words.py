@@ -29,6 +29,7 @@ MEANT = {
     "floor": "carpet, rug, grass, ice, Teppich, alfombra, 地毯",
     "person": "kid, children, elderly, nurse, Fußgänger, Kinder, peatón, gente, 行人, 孩子",
     "animal": "dog, Katze, perro, 狗",
+    "waiting": "wait, pauses, dwell, warten, esperar, 等待, 站住",
     "endless": "for ever, forever, infinite, endlos, para siempre, 永远",
     "conveyor": "conveyor belt, automatic door, Schiebetür, 自动门",
     "dock": "charging station, docking station, Ladestation, 充电桩",

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.mcp.conftest import ROOM, Caller, connected
+from tests.mcp.conftest import CRASH, ROOM, Caller, connected
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
@@ -19,7 +19,8 @@ def last(text: str) -> str:
 
 async def test_what_was_done_with_a_file_as_it_is_is_not_advised_again(workspace: Path) -> None:
     file = workspace / "room.yaml"
-    file.write_text(ROOM, encoding="utf-8")
+    noisy = ROOM.replace("{name: diff}", "{name: diff, noise: true}")  # so that a trial does not say all
+    file.write_text(noisy, encoding="utf-8")
     given = {"scenario_path": "room.yaml"}
     async with connected(workspace) as client:
         checked = last(await client.text("validate_scenario", **given))
@@ -33,9 +34,16 @@ async def test_what_was_done_with_a_file_as_it_is_is_not_advised_again(workspace
         await client.data("run_episode", **given)
         seen = last(await client.text("render_snapshot", **given, return_image=False))
         assert "run_episode" not in seen
-        file.write_text(ROOM + "# changed\n", encoding="utf-8")
+        file.write_text(noisy + "# changed\n", encoding="utf-8")
         seen = last(await client.text("render_snapshot", **given, return_image=False))
         assert "run_episode scenario_path=room.yaml" in seen
+
+
+async def test_a_trial_that_says_all_needs_no_run(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        assert "report it" in last(await client.text("render_snapshot", scenario_yaml=ROOM, return_image=False))
+        for text in (CRASH, ROOM.replace("{name: diff}", "{name: diff, noise: true}")):
+            assert "run_episode" in last(await client.text("render_snapshot", scenario_yaml=text, return_image=False))
 
 
 async def test_a_world_without_robots_is_not_to_be_run(client: Caller) -> None:

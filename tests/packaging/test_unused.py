@@ -18,7 +18,7 @@ CALLED_BY_OTHERS = {
     "pickle": "persistent_id persistent_load",
     "shutil and os.walk": "inode is_junction",
     "typer": "on_broken_pipe",
-    "learners, by message": "_advance _renew _set_level",
+    "learners, by message": "_advance _observe _renew _set_level",
     "drives of users": "coast",
     "scripts of 2.12": "coherence_force critical gaze_force group_repulsive_force init_geometry load_group_behaviors "
     "load_yaml step_world_plot update_members",

@@ -93,7 +93,7 @@ def _open(instance: Instance, answer: Answer, workplace: Path, step: bool) -> Ge
     """Find, read and check the scenario, and make the first steps or leave them to the episodes.
 
     Returns:
-        What can be observed, without a scenario where none is needed; None if nothing can be.
+        The material to observe, without a scenario where none is needed; None if nothing can be.
     """
     case = instance.case
     named_text = find_scenario(answer, case.files)
@@ -254,7 +254,7 @@ def _runs(plan: Any, material: Material, seed: int, looks: bool, in_vain: bool) 
         chosen = without_noise(scenario()) if exact else scenario()
         if exact and chosen is scenario():
             return run(False)
-        world = material.scene(seed).world  # its time limit ends a run for everybody, unless the case is about it
+        world = material.scene(seed).world  # its time limit ends every run, unless the case is about it
         limit = math.inf if in_vain else world.time_limit or math.inf
         seconds = min(plan.seconds, limit, _MAX_STEPS * float(world.step_time))
         return run_episode(chosen, seed, seconds, looks=looks)

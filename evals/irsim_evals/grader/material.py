@@ -77,7 +77,7 @@ class Material:
     """An answer, opened.
 
     Attributes:
-        answer: What the agent left; a scenario that stands only in its reply is a file, too.
+        answer: The files and words of the agent; a scenario that stands only in its reply is a file, too.
         scenario: The scenario that the simulator has read; None if there is no scenario to read.
         selectors: Selections of the case.
         passable: Selections of bodies that others may pass through.

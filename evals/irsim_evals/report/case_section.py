@@ -41,7 +41,7 @@ def _case(content: Content, places: Sequence[int]) -> str:
     facts += [f"family {first.family}"] if first.family != first.verdict.case else []
     facts += [f"instance {first.verdict.instance}"] if first.verdict.instance else []
     words = f"{name} {first.title} {' '.join(first.category)} {first.family}".lower()
-    hard = note(f"What makes it hard: {escaped(first.hard)}") if first.hard else ""
+    hard = note(f"Why it is hard: {escaped(first.hard)}") if first.hard else ""
     answers = "".join(_trial(content, place, several) for place in places)
     return (
         f'<details class="case" id="{_slug(name)}" data-categories="{escaped(" ".join(first.category))}" '

@@ -116,7 +116,7 @@ def summarize(trials: Sequence[Trial], arm: str) -> ArmSummary:
 
 
 def table_by(trials: Sequence[Trial], arms: Sequence[str], names: Callable[[Trial], Iterable[str]]) -> Table:
-    """Passes of each arm in rows; ``names`` are those of the rows that a trial belongs to."""
+    """Passes of each arm in rows; ``names`` gives the rows that a trial belongs to."""
     by_row: dict[str, dict[str, list[bool]]] = {}
     for trial in trials:
         for name in names(trial):

@@ -58,7 +58,7 @@ def tables(content: Content) -> list[Section]:
 
 
 def _costs(arms: list[ArmSummary]) -> Section:
-    """What a pass costs each arm; without rows if no cost is known."""
+    """The costs of a pass for each arm; without rows if no cost is known."""
     names = list(dict.fromkeys(name for arm in arms for name in arm.cost.totals))
     heads = ["arm", "answers with a known cost", *(f"{UNITS.get(name, name)} per pass" for name in names)]
     rows = []

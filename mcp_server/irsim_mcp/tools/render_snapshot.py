@@ -19,7 +19,7 @@ from irsim_mcp.limits import MAX_SEED, MAX_STEPS
 from irsim_mcp.resources import uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, reporter, strict
-from irsim_mcp.tools.validate_scenario import new_collisions, report_of, text_of
+from irsim_mcp.tools.validate_scenario import new_collisions, report_of, text_of, trial_has_problems
 
 __all__ = ["PLACE", "tool"]
 
@@ -129,6 +129,10 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
     hits = new_collisions(answer["report"]["changes"])
     if hits:
         report.next = report.next.replace("Look at it with render_snapshot, then", "Then") + f" {given} seeds=3."
+    elif not same and _says_all(answer["report"]):
+        report.next = (
+            f"{first}{',' if not report.issues else ''} report it: what was tried is the whole run, every time."
+        )
     elif not same:
         report.next = f"{first}{',' if not report.issues else ''} run_episode {given} seeds=3."
     if not same and not hits and any(item["code"] == "no-behavior" for item in answer["report"]["findings"]):
@@ -242,3 +246,9 @@ def _robot(robot: dict[str, Any]) -> str:
     goal = "no goal" if robot["goal"] is None else "goal ({:.2f}, {:.2f})".format(*robot["goal"])
     status = "" if robot["status"] == "under way" else f" {robot['status']}"
     return f"{clean(robot['name'])!r}{label}{status} at ({x:.2f}, {y:.2f}) heading {heading:.2f} rad, {goal}"
+
+
+def _says_all(report: dict[str, Any]) -> bool:
+    """Whether a trial is all there is to say about a run: it ended by itself, all went well, and nothing is random."""
+    tried = report["dry_run"]
+    return tried is not None and tried["ended"] == "done" and not tried["random"] and not trial_has_problems(report)

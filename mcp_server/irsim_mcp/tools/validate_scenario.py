@@ -15,7 +15,7 @@ from irsim_mcp.answers import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
 
-__all__ = ["PLACE", "Report", "new_collisions", "report_of", "text_of", "tool"]
+__all__ = ["PLACE", "Report", "new_collisions", "report_of", "text_of", "tool", "trial_has_problems"]
 
 PLACE = 2
 
@@ -119,9 +119,9 @@ def _next_of_valid(data: dict[str, Any], looked: bool) -> str:
     then = ", then ".join(steps) or "nothing is left to do: there are no robots to run"
     tail = "" if runs or not steps else " (there are no robots to run)"
     if data["warnings"]:
-        tried = " and what was tried" if _dry_run_has_problems(data) else ""
+        tried = " and what was tried" if trial_has_problems(data) else ""
         return f"Check whether the warnings{tried} are intended{tail}, {then}"
-    if _dry_run_has_problems(data):
+    if trial_has_problems(data):
         return f"It is valid, but check whether all that happened when it was tried is intended{tail}; {then}"
     if tail:
         return f"There are no robots to run; {then}"
@@ -182,7 +182,7 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
     )
 
 
-def _dry_run_has_problems(data: dict[str, Any]) -> bool:
+def trial_has_problems(data: dict[str, Any]) -> bool:
     """Whether something happened in the dry run that is hardly intended; an early end of it does not count."""
     tried = data["dry_run"]
     if tried is None:

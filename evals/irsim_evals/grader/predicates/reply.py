@@ -161,7 +161,7 @@ class Says(AnswerPredicate):
         unwanted = [pattern for pattern in self.none_of if occurs(pattern)]
         lacking = bool(self.any_of) and not any(map(occurs, self.any_of))
         made = [name for name, ways in self.points.items() if any(map(occurs, ways))]
-        asked = self.all_of or self.any_of or self.points  # whoever says nothing says nothing unwanted
+        asked = self.all_of or self.any_of or self.points  # an empty reply holds no unwanted word
         need = len(self.points) if self.at_least is None else self.at_least
         ways = len(self.any_of) + len(self.all_of)
         expected = f"says {self.about or 'so'}, in words that the case knows ({ways} ways)"
