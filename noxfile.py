@@ -3,7 +3,7 @@
 ``nox -s check`` is what you run all day: format, lint, strict types, generated files, quick tests.
 ``nox -s full`` is the whole proof. What each part is for:
 
-- ``newest``: on the newest Python, in one environment: lint, types, generated files, a tenth of the proof of the grader
+- ``newest``: on the newest Python, in one environment: lint, types, generated files, a twentieth of the proof of the grader
   of evals, and the parts ``slow``, ``browser`` and ``peers``.
 - ``lowest``: on the oldest Python with the lower bound of every dependency: the quick tests of what depends on those
   (models, messages, arrays, geometry, figures, server, command line), not of arithmetic, pages, processes and contents.
@@ -180,7 +180,7 @@ for _version in (OLDEST, NEWEST):
 
 @nox.session(python=find_python(NEWEST), reuse_venv=True)
 def newest(session: nox.Session) -> None:
-    """Linters, slow tests, browser, a tenth of the proof of the grader, and peers, on the newest Python.
+    """Linters, slow tests, browser, a twentieth of the proof of the grader, and peers, on the newest Python.
 
     Linters and peers keep one processor busy half of the time, so they go on beside the tests.
     """

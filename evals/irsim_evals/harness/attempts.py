@@ -210,8 +210,8 @@ def drift_of(recorded: Attempt, now: Attempt) -> list[str]:
     for number, (old, new) in enumerate(zip(before, after, strict=False), 1):
         if old.result_sha and old.result_sha != new.result_sha:
             texts = [json.dumps(call.result, ensure_ascii=False) for call in (old, new)]
-            was, now = shorten_pair(texts[0], texts[1], _MAX_DRIFT)
-            differences.append(f"call {number}, {old.name}: it was {was}, it is {now}")
+            was, became = shorten_pair(texts[0], texts[1], _MAX_DRIFT)
+            differences.append(f"call {number}, {old.name}: it was {was}, it is {became}")
     if len(before) != len(after):
         differences.append(f"{len(before)} calls were recorded, {len(after)} were made")
     return differences
