@@ -3,8 +3,8 @@
 ``nox -s check`` is what you run all day: format, lint, strict types, generated files, quick tests.
 ``nox -s full`` is the whole proof. What each part is for:
 
-- ``newest``: on the newest Python, in one environment: lint, types, generated files, a twentieth of the proof of the grader
-  of evals, and the parts ``slow``, ``browser`` and ``peers``.
+- ``newest``: on the newest Python, in one environment: lint, types, generated files, a twentieth of the proof of the
+  grader of evals, and the parts ``slow``, ``browser`` and ``peers``.
 - ``lowest``: on the oldest Python with the lower bound of every dependency: the quick tests of what depends on those
   (models, messages, arrays, geometry, figures, server, command line), not of arithmetic, pages, processes and contents.
 - ``sanitize``: the core's tests with its address and undefined-behavior sanitizers on.
