@@ -130,9 +130,8 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
     if hits:
         report.next = report.next.replace("Look at it with render_snapshot, then", "Then") + f" {given} seeds=3."
     elif not same and _says_all(answer["report"]):
-        report.next = (
-            f"{first}{',' if not report.issues else ''} report it: what was tried is the whole run, every time."
-        )
+        report.next = f"{first}{',' if not report.issues else ''} report it: the trial is the whole run, every time."
+        report.next += f" run_episode {given} keeps a record and measures distances."
     elif not same:
         report.next = f"{first}{',' if not report.issues else ''} run_episode {given} seeds=3."
     if not same and not hits and any(item["code"] == "no-behavior" for item in answer["report"]["findings"]):
