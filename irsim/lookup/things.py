@@ -214,10 +214,10 @@ THINGS: dict[str, Guide] = {
         ),
     ),
     "waiting": Guide(
-        "who waits, waits by the clock",
-        "Who sets off later has start_time. On the way, behavior replay stands still between two equal poses: by the "
-        "clock, whoever is there; orca and footprint_orca let others pass by themselves. Who has arrived stays there; "
-        "the run ends when all robots have, unless it is run until time_limit.",
+        "waiting goes by the clock",
+        "A body that sets off later has start_time. On the way, behavior replay stands still between two equal poses, "
+        "at fixed times; orca and footprint_orca let others pass by themselves. A robot that has arrived stays there, "
+        "and the run ends when all robots have arrived, unless it is run until time_limit.",
         "obstacle: {name: pedestrian, kinematics: {name: omni}, shape: {name: circle, radius: 0.25},\n"
         "           state: [5, 1, 1.5708], behavior: {name: replay, times: [0, 2, 5, 8],\n"
         "           poses: [[5, 1], [5, 3], [5, 3], [5, 6]]}}",

@@ -61,7 +61,7 @@ class Folder:
         return f"wrote {'/'.join(parts)} ({len(data):,} bytes)"
 
     def read(self, name: str, start: int = 0) -> str | tuple[str, bytes]:
-        """Text of a file from a character on, since one call returns only so many; or media type and picture.
+        """A part of a text file, which begins at a character; or the media type and content of a picture.
 
         Raises:
             FolderError: There is no such file, or it is neither a text nor a small picture.

@@ -122,7 +122,7 @@ def _is_refused(case: Case, name: str, content: bytes) -> bool:
         return True
     said: Any = [item.predicate for item in case.check if item.predicate.name == "files" and not item.soft]
     counted = any(fnmatch(name, one.pattern) and not matches(one.number, 1, "count") for one in said)
-    return counted or name in getattr(case, "missing", [])
+    return counted or name in case.missing
 
 
 def _with_files(answer: Answer, extra: Mapping[str, bytes], turns: int) -> Answer:

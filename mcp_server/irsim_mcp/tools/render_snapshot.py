@@ -125,15 +125,15 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
     labels = {robot["name"]: robot["label"] for robot in answer["scene"]["robots"]}
     table = scene_lines(answer["table"], labels, answer["scene"]["seed"])
     same = report.changes is not None and answer["report"]["changes"]["same"]
-    first = "If the picture is right" if not report.issues else "Fix what is not meant, then"
+    first = "If the picture is right," if not report.issues else "Fix what is not meant, then"
     hits = new_collisions(answer["report"]["changes"])
     if hits:
         report.next = report.next.replace("Look at it with render_snapshot, then", "Then") + f" {given} seeds=3."
     elif not same and _says_all(answer["report"]):
-        report.next = f"{first}{',' if not report.issues else ''} report it: the trial is the whole run, every time."
+        report.next = f"{first} report it: the trial is the whole run, every time."
         report.next += f" run_episode {given} keeps a record and measures distances."
     elif not same:
-        report.next = f"{first}{',' if not report.issues else ''} run_episode {given} seeds=3."
+        report.next = f"{first} run_episode {given} seeds=3."
     if not same and not hits and any(item["code"] == "no-behavior" for item in answer["report"]["findings"]):
         name = str(given).removeprefix("scenario_path=")
         report.next = (
@@ -143,7 +143,7 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
     if ran and not same and not hits:
         report.next = "It has been run as it is: change it, or report what the run has shown."
     if not answer["scene"]["robots"] and not same:
-        report.next = f"{first}{',' if not report.issues else ''} it is done: without robots there is nothing to run."
+        report.next = f"{first} it is done: without robots there is nothing to run."
     head, *findings, advice = text_of(report).splitlines()
     line = _line(answer["scene"], run_id, brief=True, passages=answer["table"]["passages"])
     if same:
