@@ -22,7 +22,7 @@ robot:
 """
 
 
-async def test_valid(client: Caller) -> None:
+async def test_valid(client: Caller, workspace: Path) -> None:
     result = await client.call("validate_scenario", scenario_yaml=ROOM)
     data = data_of(result)
     assert (data["valid"], data["error_count"], data["issues"]) == (True, 0, [])
