@@ -74,10 +74,6 @@ class Parameter(Record):
 class _AssertionBase(Record):
     id: str
     """Name of the assertion, unique in the case."""
-    soft: bool = False
-    """Reported, but not needed for the strict pass."""
-    weight: Positive = 1.0
-    """Weight in the share of assertions that hold."""
     when: Literal["always", "built", "unbuilt"] | None = None
     """Whether it counts only if there is a scenario, or only if there is not; default: with a scenario if it is about
     the world, else always."""

@@ -80,6 +80,5 @@ def _print_table(verdicts: Sequence[Verdict], out: Console) -> None:
 
 def _in_words(outcome: Outcome) -> str:
     where = f" ({clean(outcome.yaml_path, _MAX_SHOWN)})" if outcome.yaml_path else ""
-    soft = ", not required" if outcome.soft else ""
     expected, observed = (clean(text, _MAX_SHOWN) for text in (outcome.expected, outcome.observed))
-    return f"{outcome.assertion}{soft}: expected {expected}; observed {observed}{where}"
+    return f"{outcome.assertion}: expected {expected}; observed {observed}{where}"

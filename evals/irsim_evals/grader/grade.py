@@ -53,7 +53,7 @@ def grade(instance: Instance, answer: Answer, *, whole: bool = True) -> Verdict:
     try:
         for outcome in _outcomes(instance, answer, Path(workplace.name), whole):
             outcomes.append(outcome)
-            if not (whole or outcome.passed or outcome.soft):
+            if not (whole or outcome.passed):
                 break
     except Exception as error:  # a fault of the grader must not pass for one of the answer: it is named as such
         seen = f"{type(error).__name__}: {error}"[:300]
@@ -72,11 +72,12 @@ def _outcomes(instance: Instance, answer: Answer, workplace: Path, whole: bool) 
         return
     built = material.scenario is not None
     if built:
-        yield from _sanity(instance, material, moves=whole)
+        yield from _sanity(instance, material)
     yield from _assertions(instance, material, built)
     if built:
-        if not whole:
-            yield _moves(instance, material)
+        seed = instance.case.seeds[0]
+        seconds = _MOVING_TIME + latest_start(material.scene(seed))
+        yield check_moves(run_episode(material.driven_by(None), seed, seconds))
         for plan in instance.case.episodes:
             yield from _episodes(plan, material, whole, instance.case.in_vain)
 
@@ -125,8 +126,8 @@ def _open(instance: Instance, answer: Answer, workplace: Path, step: bool) -> Ge
             ("a reply and no scenario" if said else "neither a scenario nor a reply") + _unread(answer),
         )  # fmt: skip
         return material if may and said else None
-    others = [] if _has_several(case) else rivals(answer, case.files, named_text[0])
-    if others:
+    several = any(item.file or item.predicate.name in ("every_scenario", "comparison") for item in case.check)
+    if not several and (others := rivals(answer, case.files, named_text[0])):
         yield _said(
             "one-scenario", "parse", False, "one scenario, or one that the reply names",
             f"nothing says which is meant: {', '.join([named_text[0], *others][:6])}",
@@ -169,25 +170,13 @@ def _unread(answer: Answer) -> str:
     return words + "".join(f"; {text}, and is not opened" for text in closed[:3])
 
 
-def _has_several(case: Any) -> bool:
-    """Whether a case asks for several scenarios."""
-    return any(item.file or item.predicate.name in ("every_scenario", "comparison") for item in case.check)
-
-
-def _sanity(instance: Instance, material: Material, moves: bool) -> Iterator[Outcome]:
+def _sanity(instance: Instance, material: Material) -> Iterator[Outcome]:
     case = instance.case
     for seed in case.seeds:
         results = check_scene(material, material.scene(seed), overlap=not case.overlap)
         yield from (item for item in results if seed == case.seeds[0] or not item.passed)
     yield check_sensors(material.scene(case.seeds[0]))
     yield check_goals(material.scene(case.seeds[0]), in_time=not case.in_vain)
-    if moves:
-        yield _moves(instance, material)
-
-
-def _moves(instance: Instance, material: Material) -> Outcome:
-    seed = instance.case.seeds[0]
-    return check_moves(run_episode(material.driven_by(None), seed, _MOVING_TIME + latest_start(material.scene(seed))))
 
 
 def _assertions(instance: Instance, material: Material, built: bool) -> Iterator[Outcome]:
@@ -208,9 +197,8 @@ def _in_scene(material: Material, item: Any, seed: int) -> Any:
         about = material.other(item.file)
         scene = about.scene(seed)
         world = at_start(scene) if item.predicate.subject == "episode" else scene
-        observation: Observation = related(item.predicate, about, scene).observe(about, world)
-        observation.seed = seed if observation.seed is None else observation.seed
-        return observation
+        seen: Observation = related(item.predicate, about, scene).observe(about, world)
+        return replace(seen, seed=seed if seen.seed is None else seen.seed)
 
     return look
 
@@ -229,7 +217,7 @@ def _episodes(plan: Any, material: Material, whole: bool, in_vain: bool) -> Iter
             )
             look.seed = seed if look.seed is None else look.seed
             seen[item.id].append(look)
-            if not (look.passed or item.soft or whole) and plan.share == 1:
+            if not (look.passed or whole) and plan.share == 1:
                 yield _outcome(item, look, False)
     for item in plan.check:
         looks = seen[item.id]
@@ -275,21 +263,20 @@ def _observed(item: Any, looks: Iterable[Any]) -> Iterator[Outcome]:
         yield _outcome(item, first, first.passed)
 
 
-def _guarded(look: Any) -> Observation:
+def _guarded(look: Callable[..., Observation]) -> Observation:
     try:
-        observation: Observation = look()
-        return observation
-    except IrsimError as error:
-        return Observation(False, "something that can be observed", str(error).splitlines()[0])
+        return look()
     except Exception as error:  # the grader is total: what cannot be observed does not hold
-        return Observation(False, "something that can be observed", f"{type(error).__name__}: {error}"[:300])
+        known = isinstance(error, IrsimError)
+        seen = str(error).splitlines()[0] if known else f"{type(error).__name__}: {error}"[:300]
+        return Observation(False, "something that can be observed", seen)
 
 
 def _outcome(item: Any, observation: Observation, passed: bool) -> Outcome:
     expected = f"{item.file}: {observation.expected}" if item.file else observation.expected
     return Outcome(
         assertion=item.id, stage=item.predicate.stage, passed=passed, expected=expected, observed=observation.observed,
-        yaml_path=observation.yaml_path, seed=observation.seed, soft=item.soft, weight=item.weight,
+        yaml_path=observation.yaml_path, seed=observation.seed,
         marks=[] if passed else observation.marks,
     )  # fmt: skip
 
@@ -312,22 +299,16 @@ def _ungraded(instance: Instance, outcomes: list[Outcome]) -> list[Outcome]:
 def _verdict(
     instance: Instance, answer: Answer, outcomes: list[Outcome], files: dict[str, str], seconds: float
 ) -> Verdict:
-    hard = [item for item in outcomes if not item.soft]
-    weight = sum(item.weight for item in outcomes)
-    reached: Stage = STAGES[-1]
-    for stage in STAGES:
-        if any(not item.passed for item in hard if item.stage == stage):
-            reached = stage
-            break
+    failed = {item.stage for item in outcomes if not item.passed}
     built = any(item.assertion == "loads" and item.passed for item in outcomes)
     asks = "?" in answer.reply.replace("?`", "")
     return Verdict(
         case=instance.case.id,
         instance=instance.name,
-        strict=bool(hard) and all(item.passed for item in hard),
-        rate=sum(item.weight for item in outcomes if item.passed) / weight if weight else 0.0,
+        strict=bool(outcomes) and not failed,
+        rate=sum(item.passed for item in outcomes) / max(1, len(outcomes)),
         disposition="build" if built else "ask" if asks else "flag" if answer.reply else None,
-        reached=reached,
+        reached=next((stage for stage in STAGES if stage in failed), STAGES[-1]),
         outcomes=outcomes,
         seconds=round(seconds, 3),
         files=files,

@@ -47,9 +47,6 @@ class Outcome(Record):
     """Where in the scenario the observed value comes from."""
     seed: int | None = None
     """Seed of the world or episode in which it was observed."""
-    soft: bool = False
-    """Reported, but not needed for the strict pass."""
-    weight: float = 1.0
     marks: list[Mark] = []
 
 
@@ -94,9 +91,9 @@ class Verdict(Record):
     instance: str = ""
     """Seed and wording of a fresh instance; empty for the case as published."""
     strict: bool
-    """Whether every assertion that is not soft holds."""
+    """Whether every assertion holds."""
     rate: float = Field(ge=0, le=1)
-    """Weighted share of the assertions that hold; what comes after a failed stage counts as failed."""
+    """Share of the assertions that hold; what comes after a failed stage counts as failed."""
     disposition: str | None = None
     """Whether the agent built a scenario, asked or flagged a problem."""
     reached: Stage

@@ -32,7 +32,7 @@ def idle_assertions(instance: Instance, golds: Sequence[Answer]) -> Iterator[tup
     """
     case: Any = instance.case
     wanted = [*case.check, *(item for plan in case.episodes for item in plan.check)]
-    left = [item.id for item in wanted if not item.soft and item.when != "unbuilt"]
+    left = [item.id for item in wanted if item.when != "unbuilt"]
     empty = _broken(instance, _EMPTY)
     yield from ((name, "empty_holds") for name in left if name not in empty)
     trials = [trial for gold in golds for trial in changes_of(instance, gold, Counter()) if trial.kind != "rewrite"]

@@ -120,7 +120,7 @@ def attacks_on_answer(instance: Instance, answer: Answer) -> Iterator[tuple[str,
 def _is_refused(case: Case, name: str, content: bytes) -> bool:
     if case.python == "none" and content.startswith(b"#!"):
         return True
-    said: Any = [item.predicate for item in case.check if item.predicate.name == "files" and not item.soft]
+    said: Any = [item.predicate for item in case.check if item.predicate.name == "files"]
     counted = any(fnmatch(name, one.pattern) and not matches(one.number, 1, "count") for one in said)
     return counted or name in case.missing
 

@@ -112,7 +112,7 @@ def _verdicts(outcomes: Sequence[Outcome], numbers: dict[int, int], lines: dict[
     for one in outcomes:
         place = numbers.get(id(one))
         badge = f'<span class="place" title="number in the picture">{place}</span>' if place else ""
-        more = [one.stage, *(["not needed to pass"] if one.soft else []), *([f"seed {one.seed}"] if one.seed else [])]
+        more = [one.stage, *([f"seed {one.seed}"] if one.seed else [])]
         where = ""
         if one.yaml_path:
             at = f", {file} {_line_words(lines[one.yaml_path])}" if one.yaml_path in lines else ""

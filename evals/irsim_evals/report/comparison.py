@@ -243,5 +243,5 @@ def _share(trials: Sequence[Trial]) -> float:
 
 
 def _reason(trials: Sequence[Trial]) -> str:
-    failed = next((one for trial in trials for one in trial.verdict.failed() if not one.soft), None)
+    failed = next((one for trial in trials for one in trial.verdict.failed()), None)
     return "" if failed is None else f"{failed.assertion}: expected {failed.expected}; observed {failed.observed}"

@@ -43,7 +43,7 @@ def category_of(verdict: Verdict, ended: str = "") -> Category | None:
     if verdict.strict:
         many = (cost.calls or 0) > MAX_CALLS or (cost.turns is None and (cost.tokens or 0) > MAX_TOKENS)
         return "efficiency" if many else None
-    failed = [one for one in verdict.failed() if not one.soft]
+    failed = verdict.failed()
     checks = [step for step in steps if _CHECKS.fullmatch(step.tool)]
     if ended or any(one.assertion in _MISSING for one in failed):
         return "early stop"

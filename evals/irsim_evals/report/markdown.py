@@ -50,7 +50,7 @@ def _arm(arm: ArmSummary) -> list[str]:
 def _failed(trials: Sequence[Trial]) -> str:
     lines = []
     for trial in trials[:_MAX_FAILED]:
-        one = next((o for o in trial.verdict.failed() if not o.soft), None)
+        one = next(iter(trial.verdict.failed()), None)
         why = f": {_safe(one.assertion)}: expected {_safe(one.expected)}; observed {_safe(one.observed)}" if one else ""
         attempt = f" (attempt {trial.number})" if trial.number > 1 else ""
         kind = category_of(trial.verdict, trial.ended)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated, Any
 
+import shapely
+
 from irsim.common.arguments import is_number
 from irsim.options.registry import SENSORS
 from irsim_evals.grader.hues import discernible
@@ -43,16 +45,27 @@ SensorKey = Annotated[str, OneOf("parameter of a sensor", (*SENSOR_KINDS, *sorte
 
 @register("count")
 class Count(OfBodies, ScenePredicate):
-    """How many bodies a selection holds."""
+    """How many bodies a selection holds, and how crowded the world is with them: one of both measures is enough."""
 
     number: Match
     """Accepted numbers."""
+    cover: Match | None = None
+    """Accepted shares of the world's area that they cover."""
+    per_10_m2: Match | None = None
+    """Accepted numbers for each 10 m² of the world."""
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
-        """Count them."""
-        count = len(material.bodies(scene, self.of))
-        expected = f"{self.of}: {self.number.words()}"
-        return Observation(matches(self.number, count, "count"), expected, f"{self.of}: {count}")
+        """Count them, and add up their areas."""
+        bodies, (x0, y0, x1, y1) = material.bodies(scene, self.of), scene.bounds
+        area = (x1 - x0) * (y1 - y0)
+        covered = shapely.union_all([body.footprint for body in bodies]).area / area
+        asked = [(self.cover, covered, "of the area"), (self.per_10_m2, 10 * len(bodies) / area, "for each 10 m²")]
+        crowded = [(match, value, what) for match, value, what in asked if match is not None]
+        passed = matches(self.number, len(bodies), "count")
+        passed = passed and (not crowded or any(matches(match, value, "share") for match, value, _ in crowded))
+        expected, observed = f"{self.of}: {self.number.words()}", f"{self.of}: {len(bodies)}"
+        expected += "".join(f" or {match.words()} {what}" for match, _, what in crowded).replace(" or", ",", 1)
+        return Observation(passed, expected, observed + "".join(f", {show(v)} {what}" for _, v, what in crowded))
 
 
 @register("each")

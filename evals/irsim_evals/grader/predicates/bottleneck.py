@@ -1,21 +1,32 @@
-"""The narrowest place on the way of a body."""
+"""The narrowest place on the way of a body, and who passes it first."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
 
 import irsim._core as core
 from irsim.validation.feasibility.clearance_grid import ClearanceGrid, Gap, cells_over, narrowest_gap
 from irsim.validation.feasibility.scenes import StartState
 from irsim_evals.grader.matching import Match, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, register
+from irsim_evals.grader.predicates._base import (
+    EpisodePredicate,
+    Observation,
+    OfBodies,
+    ScenePredicate,
+    judged,
+    register,
+)  # fmt: skip
 from irsim_evals.grader.predicates.ways import disc_radius
+from irsim_evals.grader.selection import Selection
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
+    from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
     from irsim_evals.grader.scene import GradedScene
 
@@ -46,6 +57,35 @@ class Bottleneck(OfBodies, ScenePredicate):
         words, odd = ([(body, f"{show(place.width)} m at {show(list(place.place))}") for body, place in pairs]
                       for pairs in (places, wrong))  # fmt: skip
         return judged(expected, words, odd, "goal", marks=marks)
+
+
+@register("before")
+class Before(OfBodies, EpisodePredicate):
+    """Every body of a selection passes the narrowest place on its way, or arrives, before any body of another selection
+    does. An empty selection fails."""
+
+    to: Selection
+    """Name of the selection of those who come later."""
+    what: Literal["bottleneck", "goal"] = "bottleneck"
+    """The place: see `bottleneck`; who comes there several times passes it the last time."""
+
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
+        """Compare the times."""
+        first, later = (material.bodies(episode.scene, name) for name in (self.of, self.to))
+        times = {body.name: self._time(episode, body) for body in (*first, *later)}
+        begin = min((times[body.name] for body in later), default=-math.inf)
+        seen = [(body, f"{times[body.name]:.1f} s") for body in (*first, *later)]
+        wrong = [pair for pair in seen[: len(first)] if not times[pair[0].name] < begin]
+        expected = f"{self.of} pass the {self.what} before {self.to}, who come there after {begin:.1f} s"
+        return judged(expected, seen, wrong if later else seen, "behavior")
+
+    def _time(self, episode: GradedEpisode, body: GradedBody) -> float:
+        """When a body passes the place [s]; never is infinite."""
+        if self.what == "goal":
+            return episode.arrival(body.name) or math.inf
+        gap = _narrowest(episode.scene, body) if body.goals else Gap(0.0, (math.inf, math.inf), 0.0)
+        far = np.hypot(*(episode.positions(body.index) - gap.place[:2]).T)
+        return float(max(episode.trace.time[far <= gap.width / 2], default=math.inf))
 
 
 def _narrowest(scene: GradedScene, body: GradedBody) -> Gap:

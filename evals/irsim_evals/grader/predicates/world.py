@@ -12,7 +12,7 @@ from pydantic import model_validator
 from irsim.objects.describe import grid_values
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register
+from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register
 from irsim_evals.grader.words import OneOf
 
 if TYPE_CHECKING:
@@ -162,30 +162,3 @@ def _words(what: str, parts: list[Any]) -> str:
         return ""
     (x, y), area = _middle(parts[0]), sum(part.area for part in parts)
     return f"{what}: {show(float(area))} m², for example at ({x:.2f}, {y:.2f})"
-
-
-@register("crowding")
-class Crowding(OfBodies, ScenePredicate):
-    """The bodies of a selection cover a share of the world, or there are so many for each 10 m²; one is enough."""
-
-    stage = "relations"
-
-    cover: Match | None = None
-    """Accepted shares of the area."""
-    per_10_m2: Match | None = None
-    """Accepted numbers for each 10 m²."""
-
-    def observe(self, material: Material, scene: GradedScene) -> Observation:
-        """Add up the areas."""
-        x0, y0, x1, y1 = scene.bounds
-        area = (x1 - x0) * (y1 - y0)
-        bodies = material.bodies(scene, self.of)
-        cover = shapely.union_all([body.footprint for body in bodies]).area / area
-        density = 10 * len(bodies) / area
-        passed = (self.cover is not None and matches(self.cover, cover, "share")) or (
-            self.per_10_m2 is not None and matches(self.per_10_m2, density, "share")
-        )
-        wanted = {"share of the area": self.cover, "number for each 10 m²": self.per_10_m2}
-        words = [f"{what} {match.words()}" for what, match in wanted.items() if match is not None]
-        seen = f"share {show(cover)}, {show(density)} for each 10 m²"
-        return Observation(bool(bodies) and passed, f"{self.of}: {' or '.join(words)}", seen)
