@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
+_MAX_NEAR = 10
+"""Number of objects that can move, up to which several episodes tell of how near they came to one another."""
 _PROGRESS_PERIOD_S = 0.5
 """Least time between two progress messages [s]."""
 _MAX_FINDINGS = 3
@@ -115,16 +117,28 @@ def _run(job: dict[str, Any], progress: _Progress) -> str:
 
 
 def _run_seeds(job: dict[str, Any], progress: _Progress) -> str:
-    """Run several episodes, and draw the first that failed at the moment that decided it."""
-    from irsim.api.run_seeds import run_seeds
+    """Run several episodes; draw the first that failed at the moment that decided it, or else the end of one.
 
+    With it come the table of the objects, and the closest approaches in that episode unless there are many objects.
+    """
+    from irsim.api.run_seeds import run_seeds
+    from irsim.scenario.open import read_scenario
+    from irsim.validation.scene_table import scene_table
+
+    path, text = (job["arguments"].get(key) for key in ("path", "text"))
     result = _recorded(run_seeds, job, progress)
-    shown, png = result.shown, ""
-    if shown.outcome != "success" and shown.run_id is not None:
+    shown = result.shown
+    answer: dict[str, Any] = {"png": "", "scene": None, "table": None, "closest": []}
+    if shown.run_id is not None:
         drawn = {"size": 600, "overlays": None, "region": None, "draw": True, "strip": None}
         job["arguments"] = {"run_id": shown.run_id, "steps": shown.decisive_step or shown.steps, **drawn}
-        png = json.loads(_run_snapshot(job, _Progress(lambda line: None)))["png"]
-    return f'{{"png": "{png}", "result": {result.model_dump_json()}}}'
+        answer |= json.loads(_run_snapshot(job, _Progress(lambda line: None)))
+        scenario, _ = read_scenario(path, text=text, strict=True, limits=_limits(job))
+        answer["table"] = scene_table(scenario, shown.seed).model_dump(mode="json")
+        if len(shown.robots) + len(answer["scene"]["moving"]) <= _MAX_NEAR:
+            job["arguments"] = {"run_id": shown.run_id, "view": "closest", "robot": "all", "limit": None}
+            answer["closest"] = json.loads(_inspect(job, progress))["rows"]
+    return f'{json.dumps(answer)[:-1]}, "result": {result.model_dump_json()}}}'
 
 
 def _recorded(work: Callable[..., Any], job: dict[str, Any], progress: _Progress) -> Any:
@@ -347,9 +361,10 @@ def _error_data(error: Exception) -> dict[str, Any]:
     if isinstance(error, ScenarioError):
         errors = [item for item in error.diagnostics if item.severity == "error"]
         named = [
-            {"code": one.code, "what": one.message, "where": format_path(one.path), "line": one.line, "file": one.file}
+            {"code": one.code, "what": one.message, "where": format_path(one.path), "line": one.line, "file": one.file,
+             "fix": one.fix}
             for one in errors[:_MAX_FINDINGS]
-        ]
+        ]  # fmt: skip
         return {"code": "invalid-scenario", "errors": len(errors), "first": named}
     if isinstance(error, ScenarioNotFoundError):
         return {"code": "file-not-found", "what": "the scenario file no longer exists"}

@@ -130,11 +130,10 @@ Robots use the drive {kinematics}. Difficulty: {difficulty}. {meaning}
 m and s.
 2. Call lookup once with all topics, separated by commas, then with the closest template; change that template rather \
 than starting from scratch.
-3. Call render_snapshot after each edit, and fix what it reports by code and line, until the scenario is valid and \
-each remaining warning is intended.
+3. Call run_episode with seeds=3 after each edit, and fix what it reports by code and line, until the scenario is \
+valid and each remaining warning is intended.
 4. Look at its picture and table: is everything where it should be, is there a path to each goal?
-5. Call run_episode with a seed. If the outcome does not serve the goal, find the cause with inspect_run, change the \
-scenario and go back to 3.
+5. If the outcome does not serve the goal, find the cause with inspect_run, change the scenario and go back to 3.
 6. Report the YAML, each element with the lines that express it, the outcome, the seed, and what could not be done."""
 
 _DEBUG = """\

@@ -340,6 +340,7 @@ def as_failure(error: dict[str, Any], source: str | None) -> Exception:
             file = "" if source is not None else f"{item.get('file') or '(text)'} "
             line = "" if item["line"] is None else f" line {item['line']}"
             each.append(f"{file}{item['where']}{line} {item['code']}: {item['what']}")
+            each[-1] += f" ({item['fix']})" if item.get("fix") else ""
         count = error["errors"]
         what = f"{plural(count, 'error')}: {'; '.join(each)}"
         return failure(

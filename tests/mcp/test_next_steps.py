@@ -24,19 +24,19 @@ async def test_what_was_done_with_a_file_as_it_is_is_not_advised_again(workspace
     given = {"scenario_path": "room.yaml"}
     async with connected(workspace) as client:
         checked = last(await client.text("validate_scenario", **given))
-        assert "render_snapshot" in checked
-        assert "run_episode" in checked
+        assert checked == "Next: run_episode scenario_path=room.yaml seeds=3."
         seen = last(await client.text("render_snapshot", **given, return_image=False))
         assert "run_episode scenario_path=room.yaml seeds=3" in seen
-        checked = last(await client.text("validate_scenario", **given))
-        assert "render_snapshot" not in checked
-        assert "run_episode scenario_path=room.yaml" in checked
         await client.data("run_episode", **given)
         seen = last(await client.text("render_snapshot", **given, return_image=False))
         assert "run_episode" not in seen
         file.write_text(noisy + "# changed\n", encoding="utf-8")
         seen = last(await client.text("render_snapshot", **given, return_image=False))
         assert "run_episode scenario_path=room.yaml" in seen
+        file.write_text(EMPTY, encoding="utf-8")
+        assert "render_snapshot" in last(await client.text("validate_scenario", **given))
+        await client.call("render_snapshot", **given, return_image=False)
+        assert "nothing is left to do" in last(await client.text("validate_scenario", **given)).lower()
 
 
 async def test_a_trial_that_says_all_needs_no_run(workspace: Path) -> None:

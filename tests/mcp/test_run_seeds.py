@@ -12,7 +12,7 @@ from mcp.types import ImageContent
 
 from irsim_mcp.limits import MAX_RUN_SEEDS
 from tests.episodes.test_rounds import PATROL
-from tests.mcp.conftest import CRASH, ROOM, Caller, data_of, text_of
+from tests.mcp.conftest import CRASH, ROOM, Caller, connected, data_of, text_of
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
@@ -58,9 +58,43 @@ async def test_episodes_that_succeed_are_told_in_a_few_lines(client: Caller) -> 
     text = text_of(result)
     assert text.startswith("3 of 3 episodes succeeded.\n- success: seed 4 at ")
     assert "Check: no warnings" in text
-    assert "Next: Nothing failed; for more: benchmark scenarios=['text-" in text
-    assert [block.type for block in result.content] == ["text"]
-    assert len(text) < 400
+    assert "Next: If the picture is right, report it: nothing failed; for more: benchmark scenarios=['text-" in text
+    again = await client.call("run_episode", scenario_yaml=moved, seeds="4..6")
+    assert "Next: Report it: nothing failed; for more: benchmark scenarios=['text-" in text_of(again)
+    assert [block.type for block in again.content] == ["text"]
+    assert len(text_of(again)) < 400
+
+
+async def test_one_call_says_all_of_a_new_scenario(workspace: Path) -> None:
+    """Findings, every entry, the run, how near the bodies came, and a picture; what is known is not said again."""
+    meeting = (
+        ROOM
+        + "  - {name: other, kinematics: {name: diff}, state: [7, 4.5, 3.14], goal: [1, 4.5], behavior: {name: dash}}\n"
+    )
+    async with connected(workspace) as client:
+        first, second = [await client.call("run_episode", scenario_yaml=meeting, seeds=3) for _ in range(2)]
+    assert [block.type for block in first.content] == ["text", "image"]
+    assert [block.type for block in second.content] == ["text"]
+    for said in ("Check: no warnings", "Objects:\n- diff, circle r 0.3, dash", "'rover' at (1.00, 1.00)",
+                 "seed 0 (the picture shows step ", "'other' success, arrived at "):  # fmt: skip
+        assert said in text_of(first)
+    assert "Next: If the picture is right, report it: every run is this one." in text_of(first)
+    assert "Objects:" not in text_of(second)
+    assert "Next: Report it: every run is this one." in text_of(second)
+
+
+async def test_how_near_bodies_came_is_said_once(client: Caller) -> None:
+    wall = "obstacle:\n  - {number: 2, shape: {name: rectangle, length: 6, width: 0.1}, "
+    walls = wall + "state: [[4, 2.6, 0], [4, 0.6, 0]]}\n"
+    meeting = ROOM.replace("goal: [4, 3, 0]", "goal: [7, 1, 0]").replace("state: [1, 1, 0]", "state: [1, 2.2, 0]")
+    meeting = meeting.replace("goal: [7, 1, 0]", "goal: [7, 2.2, 0]") + (
+        "  - {name: other, kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [7, 1, 3.14],\n"
+        "     goal: [1, 1], behavior: {name: dash}}\n"
+    )
+    told = await client.text("run_episode", scenario_yaml=meeting + walls, seeds=1)
+    line = next(line for line in told.splitlines() if line.startswith("Closest to one another: "))
+    assert float(line.split()[-5]) == pytest.approx(1.2 - 0.6, abs=0.02)
+    assert "Closest to one another" not in await client.text("run_episode", scenario_yaml=CRASH, seeds=1)
 
 
 async def test_where_nothing_is_random_one_run_stands_for_all(client: Caller) -> None:

@@ -27,7 +27,8 @@ async def test_valid(client: Caller, workspace: Path) -> None:
     data = data_of(result)
     assert (data["valid"], data["error_count"], data["issues"]) == (True, 0, [])
     assert data["counts"] == {"robots": 1, "obstacles": 0, "sensors": 0}
-    assert "render_snapshot" in data["next"]
+    assert data["next"].startswith("run_episode scenario_path=text-")
+    assert data["next"].endswith(" seeds=3.")
     assert text_of(result).startswith(data["summary"])
 
 

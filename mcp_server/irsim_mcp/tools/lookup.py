@@ -20,7 +20,7 @@ _DESCRIPTION = """
     template name returns a complete scenario as YAML, with `parameters` filled in; a key or path ('vel_max'), a
     component ('dash'), a code ('unknown-key'), a metric ('spl') or any word ('parking') returns meaning, unit, range,
     default and an example; a quantity ('12 ft') is converted. Next: edit the closest template
-    and call render_snapshot.
+    and call run_episode with seeds=3.
 """
 
 

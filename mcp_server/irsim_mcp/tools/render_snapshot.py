@@ -128,7 +128,7 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
     first = "If the picture is right," if not report.issues else "Fix what is not meant, then"
     hits = new_collisions(answer["report"]["changes"])
     if hits:
-        report.next = report.next.replace("Look at it with render_snapshot, then", "Then") + f" {given} seeds=3."
+        report.next += f" {given} seeds=3."
     elif not same and _says_all(answer["report"]):
         report.next = f"{first} report it: the trial is the whole run, every time."
         report.next += f" run_episode {given} keeps a record and measures distances."

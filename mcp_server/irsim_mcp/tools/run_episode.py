@@ -15,6 +15,7 @@ from irsim.diagnostics.errors import InputError
 from irsim.results.concise import ConciseRun
 from irsim.results.episode import EventRecord
 from irsim.results.run import LOST_THINGS, MAX_CONCISE, MAX_DETAILED, RunResult, RunsResult
+from irsim.validation.scene_text import scene_lines
 from irsim_mcp.answers import WorkerResult, failure, json_answer
 from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_RUN_SEEDS, MAX_SEED, MAX_STEPS
 from irsim_mcp.resources import PAGE, uri
@@ -29,8 +30,8 @@ _DESCRIPTION = """
     Simulate an episode until every robot has arrived or stopped, or time is up. Outcome is success (every robot
     reached its goal, no collision before), collision, or timeout; none is an error. The reason says what hit or passed
     through what, where, when, and distances to goals. Returns robots (unsuccessful first), first events, a run_id,
-    kept 24 hours. With seeds: all findings, `episodes`, and the first that failed in full with a picture of that
-    moment. Next: after a failure make the call in `next`, change the scenario and run again.
+    kept 24 hours. With seeds, one call says all: findings, table of objects, `episodes`, the first that failed (or
+    one) in full, with a picture. Next: after a failure make the call in `next`, change the scenario and run again.
 """
 _SHARE = 0.7
 """Share of the time of a call in which episodes begin; the rest is for the picture."""
@@ -94,10 +95,10 @@ def tool(services: Services) -> StrictTool:
             perturb=perturb,
             until=until,
         )
-        services.note("ran", services.given(scenario_path, scenario_yaml))
-        if several:
-            return _of_seeds(data, services, services.given(scenario_path, scenario_yaml), response_format)
         given = services.given(scenario_path, scenario_yaml)
+        services.note("ran", given)
+        if several:
+            return _of_seeds(data, services, given, response_format)
         result = RunResult.model_validate(data)
         episode = result.concise(
             detailed=response_format == "detailed",
@@ -133,22 +134,32 @@ def _few(seeds: int | str | list[int]) -> list[int]:
 
 
 def _of_seeds(data: WorkerResult, services: Services, given: str, form: str) -> CallToolResult:
-    """The answer about several episodes: a line each, and the first that failed in full, with its picture."""
-    whole = RunsResult.model_validate(data["result"])
+    """The answer about several episodes: a line each, and the first that failed in full, with its picture.
+
+    Of a scenario that was not drawn as it is it has the table of all objects, too, and a picture if none failed.
+    """
+    whole, new = RunsResult.model_validate(data["result"]), not services.was_done("looked", given)
     shown, detailed = whole.shown, form == "detailed"
+    table = _table(data, shown.seed) if new and data["table"] is not None else []
+    png = data["png"] if new or whole.failed else ""
+    if table:
+        services.note("looked", given)
     shown.warnings = whole.warnings
     artifacts = None if shown.run_id is None else {name: uri(shown.run_id, name) for name in _ARTIFACTS}
-    advice = _advice_on_seeds(whole, given, bool(data["png"]))
+    advice = _advice_on_seeds(whole, given, bool(png))
     episode = shown.concise(detailed=detailed, artifacts=artifacts, advice=advice)
     episode.summary = clean(f"{whole.summary}. Seed {shown.seed}: {episode.summary}", 600)
     episode.episodes = [_brief(one) for one in whole.episodes]
     lines = [f"{whole.summary}.", *(_lines(episode.episodes) if len(episode.episodes) > 1 else ()), _found(whole)]
+    lines += table
+    picture = f" (the picture shows step {shown.decisive_step or shown.steps})" if png else ""
     if whole.failed or whole.same:
-        picture = f" (the picture shows step {shown.decisive_step or shown.steps})" if data["png"] else ""
-        lines += [
-            f"{'The first that failed, ' * (not whole.same)}seed {shown.seed}{picture}:",
-            _whole_text(shown, episode),
-        ]
+        said = _whole_text(shown, episode).rpartition("\nRecord: ")
+        lines += [f"{'The first that failed, ' * (not whole.same)}seed {shown.seed}{picture}:", said[0]]
+        lines += [*_meetings(data["closest"], shown), "".join(said[1:]).lstrip()]
+    elif picture:
+        lines += [*(f"Warning: {warning}" for warning in episode.warnings)]
+        lines += [f"Seed {shown.seed}{picture}: {clean(shown.summary, 300)}", f"Next: {advice}"]
     else:
         lines += [*(f"Warning: {warning}" for warning in episode.warnings), f"Next: {advice}"]
     content: list[TextContent | ImageContent] = [TextContent(type="text", text="\n".join(lines))]
@@ -156,9 +167,26 @@ def _of_seeds(data: WorkerResult, services: Services, given: str, form: str) -> 
         result = WorkerResult(data["result"])
         result.text = json.dumps(data["result"], separators=(",", ":"))
         content = [json_answer(result, services.limits.text, "give fewer seeds, or use response_format=detailed")]
-    if data["png"]:
-        content.append(ImageContent(type="image", data=data["png"], mime_type="image/png"))
+    if png:
+        content.append(ImageContent(type="image", data=png, mime_type="image/png"))
     return CallToolResult(content=[*content], structured_content=episode.model_dump(exclude_none=True))
+
+
+def _table(data: WorkerResult, seed: int) -> list[str]:
+    """A line for each entry of the scenario."""
+    labels = {robot["name"]: robot["label"] for robot in data["scene"]["robots"]}
+    return scene_lines(data["table"], labels, seed)
+
+
+def _meetings(closest: list[list[Any]], shown: RunResult) -> list[str]:
+    """A line about how near the objects that move came to one another, without what the lines of the robots say."""
+    said = {(robot.name, robot.nearest) for robot in shown.robots}
+    met: dict[frozenset[str], str] = {}
+    for name, distance, other, kind, _, time, *_ in closest:
+        pair = frozenset((name, other))
+        if kind != "static" and not said & {(name, other), (other, name)}:
+            met.setdefault(pair, f"{clean(name)!r} and {clean(other)!r} {distance:g} m at {time:g} s")
+    return [f"Closest to one another: {'; '.join([*met.values()][:_MAX_LINES])}"] if met else []
 
 
 def _brief(one: RunResult) -> dict[str, Any]:
@@ -184,7 +212,7 @@ def _ending(brief: dict[str, Any]) -> str:
 
 def _whole_text(shown: RunResult, episode: ConciseRun) -> str:
     """An episode in full, but no reason that its summary has, and only the events of robots if there are any."""
-    robots = {robot.name for robot in shown.robots}
+    robots = {clean(robot.name) for robot in shown.robots}
     about = [event for event in episode.events if robots & {event.object, event.partner}]
     reason = None if episode.reason and episode.reason in shown.summary else episode.reason
     changes = {"summary": clean(shown.summary, 400), "reason": reason, "events": about or episode.events}
@@ -202,14 +230,17 @@ def _found(whole: RunsResult) -> str:
 def _advice_on_seeds(whole: RunsResult, given: str, seen: bool) -> str:
     """The next call to make after several episodes."""
     name, shown = given.removeprefix("scenario_path="), whole.shown
-    more = f"benchmark scenarios=[{name!r}] seeds=20" + (" perturb=position=0.1" if whole.same else "")
+    more = f"benchmark scenarios=[{name!r}] seeds=20"
     if not shown.robots:
         return _advice(shown, given)
-    if not whole.failed:
-        left = f"{plural(len(whole.not_run), 'seed')} had no time: " if whole.not_run else "Nothing failed; for more: "
-        return f"{left}{more}."
-    if not seen:
+    doubtful = shown.jammed or any(robot.contacts_between_steps for robot in shown.robots)
+    if (doubtful and not whole.failed) or not (seen or not whole.failed):
         return _advice(shown, given)
+    if whole.not_run:
+        return f"{plural(len(whole.not_run), 'seed')} had no time: {more}."
+    if not whole.failed:
+        good = "If the picture is right, report it" if seen else "Report it"
+        return f"{good}: {'every run is this one' if whole.same else f'nothing failed; for more: {more}'}."
     view = "speeds" if shown.outcome == "timeout" else "collisions"
     return f"If the picture does not say why: inspect_run run_id={shown.run_id} view={view}. Change it, and run again."
 

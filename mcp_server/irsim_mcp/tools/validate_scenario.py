@@ -24,7 +24,7 @@ _DESCRIPTION = """
     invalid scenario is a normal result, valid=false), each with code, path, line, cause and fix. Errors must be fixed;
     with warnings it may misbehave. not-yet-simulated: tell the user that this version cannot do it. Tried: robots that
     arrived, collided, got stuck or left the world in the first steps. With base (the scenario before an edit) changes
-    lists what differs, by key, in the world and in motion (same seed). Next: fix, then render_snapshot.
+    lists what differs, by key, in the world and in motion (same seed). Next: fix, then run_episode.
 """
 
 
@@ -97,7 +97,7 @@ def tool(services: Services) -> StrictTool:
         looked = services.was_done("looked", given)
         report = report_of(data, max_issues, response_format == "detailed", services.limits.text, looked)
         if report.valid and report.next.endswith(_CALLS):
-            report.next = f"{report.next} {given}."
+            report.next += f" {given}{' seeds=3' * report.next.endswith('run_episode')}."
         text = TextContent(type="text", text=text_of(report))
         if response_format == "json":
             text = json_answer(data, services.limits.text, "fix the first problems, or use response_format=detailed")
@@ -115,9 +115,9 @@ _CALLS = ("render_snapshot", "run_episode")
 def _next_of_valid(data: dict[str, Any], looked: bool) -> str:
     """The next steps with a valid scenario, without steps already done and without a run if there are no robots."""
     runs = data["counts"].get("robots", 0) > 0
-    steps = [*["look at it with render_snapshot"] * (not looked), *["run_episode"] * runs]
-    then = ", then ".join(steps) or "nothing is left to do: there are no robots to run"
-    tail = "" if runs or not steps else " (there are no robots to run)"
+    look = "nothing is left to do: there are no robots to run" if looked else "look at it with render_snapshot"
+    then = "run_episode" if runs else look
+    tail = "" if runs or looked else " (there are no robots to run)"
     if data["warnings"]:
         tried = " and what was tried" if trial_has_problems(data) else ""
         return f"Check whether the warnings{tried} are intended{tail}, {then}"
@@ -125,7 +125,7 @@ def _next_of_valid(data: dict[str, Any], looked: bool) -> str:
         return f"It is valid, but check whether all that happened when it was tried is intended{tail}; {then}"
     if tail:
         return f"There are no robots to run; {then}"
-    return then if looked and runs else f"{then[:1].upper()}{then[1:]}"
+    return then if runs else f"{then[:1].upper()}{then[1:]}"
 
 
 def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: int, looked: bool = False) -> Report:
@@ -164,7 +164,7 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
     elif hits := new_collisions(data["changes"]):
         advice = (
             f"The edit causes a collision ({hits[0]}): report it first and offer a fix; apply it only if the user has "
-            f"not forbidden other changes. {'Then' if looked else 'Look at it with render_snapshot, then'} run_episode"
+            "not forbidden other changes. Then run_episode"
         )
     else:
         advice = _next_of_valid(data, looked)

@@ -51,7 +51,7 @@ def tool(services: Services) -> StrictTool:
         data = yaml.encode()
         replaced = await anyio.to_thread.run_sync(services.workspace.write, where, data, overwrite)
         summary = f"{'replaced' if replaced else 'wrote'} {clean(where)} ({len(data):,} bytes): {_contents(checked)}"
-        advice = f"Look at it with render_snapshot scenario_path={clean(where)}, then run_episode."
+        advice = f"Look and run: run_episode scenario_path={clean(where)} seeds=3."
         report = Written(path=where, bytes=len(data), replaced=replaced, summary=summary, next=advice)
         text = TextContent(type="text", text=f"{summary}\nNext: {advice}")
         return CallToolResult(content=[text], structured_content=report.model_dump())
