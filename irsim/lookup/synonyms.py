@@ -38,7 +38,7 @@ EVERYDAY: dict[str, str] = {
     "robot.kinematics.static": "static obstacle, fixed, immovable",
     "robot.kinematics": "drive, motion model, drive model, kinematic model, dynamics, locomotion, mobile base",
     "robot.behavior.sfm": "social force, social force model, pedestrian, human, crowd, people, walker",
-    "robot.behavior.orca": "evade, dodge, swerve around, get out of the way, give way, "
+    "robot.behavior.orca": "evade, dodge, swerve around, get out of the way, "
     "reciprocal collision avoidance, optimal reciprocal collision avoidance, pedestrian, "
     "collision avoidance, obstacle avoidance",
     "robot.behavior.avocado": "adaptive collision avoidance, opinion, opinion dynamics, cooperation, cooperative, "
