@@ -117,18 +117,14 @@ def _run(job: dict[str, Any], progress: _Progress) -> str:
 
 
 def _run_seeds(job: dict[str, Any], progress: _Progress) -> str:
-    """Run several episodes; draw the first that failed at the moment that decided it, or else the end of one.
-
-    With it come the table of the objects, and the closest approaches in that episode unless there are many objects.
-    """
+    """Run several episodes, and draw and describe the first that failed, or else the first."""
     from irsim.api.run_seeds import run_seeds
     from irsim.scenario.open import read_scenario
     from irsim.validation.scene_table import scene_table
 
     path, text = (job["arguments"].get(key) for key in ("path", "text"))
     result = _recorded(run_seeds, job, progress)
-    shown = result.shown
-    answer: dict[str, Any] = {"png": "", "scene": None, "table": None, "closest": []}
+    shown, answer = result.shown, dict[str, Any](png="", scene=None, table=None, closest=[], zones=[])
     if shown.run_id is not None:
         drawn = {"size": 600, "overlays": None, "region": None, "draw": True, "strip": None}
         job["arguments"] = {"run_id": shown.run_id, "steps": shown.decisive_step or shown.steps, **drawn}
@@ -136,8 +132,9 @@ def _run_seeds(job: dict[str, Any], progress: _Progress) -> str:
         scenario, _ = read_scenario(path, text=text, strict=True, limits=_limits(job))
         answer["table"] = scene_table(scenario, shown.seed).model_dump(mode="json")
         if len(shown.robots) + len(answer["scene"]["moving"]) <= _MAX_NEAR:
-            job["arguments"] = {"run_id": shown.run_id, "view": "closest", "robot": "all", "limit": None}
-            answer["closest"] = json.loads(_inspect(job, progress))["rows"]
+            for view in ("closest", *(["zones"] if scenario.world.zones else [])):
+                job["arguments"] = {"run_id": shown.run_id, "view": view, "robot": "all", "limit": None}
+                answer[view] = json.loads(_inspect(job, progress))["rows"]
     return f'{json.dumps(answer)[:-1]}, "result": {result.model_dump_json()}}}'
 
 
@@ -360,11 +357,11 @@ def _error_data(error: Exception) -> dict[str, Any]:
         return {"code": first.code, "what": first.message, "where": format_path(first.path), "fix": first.fix}
     if isinstance(error, ScenarioError):
         errors = [item for item in error.diagnostics if item.severity == "error"]
+        own = ("code", "line", "file", "fix")
         named = [
-            {"code": one.code, "what": one.message, "where": format_path(one.path), "line": one.line, "file": one.file,
-             "fix": one.fix}
+            {"what": one.message, "where": format_path(one.path), **{key: getattr(one, key) for key in own}}
             for one in errors[:_MAX_FINDINGS]
-        ]  # fmt: skip
+        ]
         return {"code": "invalid-scenario", "errors": len(errors), "first": named}
     if isinstance(error, ScenarioNotFoundError):
         return {"code": "file-not-found", "what": "the scenario file no longer exists"}

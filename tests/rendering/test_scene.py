@@ -48,6 +48,14 @@ def test_heading_arrows_are_for_drives_with_a_heading(make: Make, drive: str, ar
     assert "arrow" in parts(make(ROBOT % (drive, "plot: {show_arrow: true}")))
 
 
+def test_a_car_is_a_picture_unless_its_description_is_empty(make: Make) -> None:
+    car = ROBOT.replace("radius: 0.3", "radius: 0.3, wheelbase: 0.3") % ("acker", "color: darkgreen%s")
+    plain, pictured = (make(car % more).simulation for more in (", description: ''", ""))
+    shown = [SceneBuilder(each, has_picture=lambda name: True).build() for each in (plain, pictured)]
+    assert [[one.name for one in each.pictures] for each in shown] == [[], ["car_green.png"]]
+    assert [len(each.of(0, "body")) for each in shown] == [1, 0]
+
+
 def test_the_arrow_of_an_omni_drive_points_where_it_goes(make: Make) -> None:
     env = make(ROBOT.replace("goal: [8, 3, 0]", "goal: [2, 8]") % ("omni", "plot: {show_arrow: true}"))
     env.step()

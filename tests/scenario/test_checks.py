@@ -254,6 +254,10 @@ def test_finds(data: dict[str, Any], finding: str) -> None:
     assert findings(data) == [finding]
 
 
+def test_an_empty_description_is_a_plain_car() -> None:
+    assert findings(robot(**CAR, description="")) == findings(robot(**CAR))
+
+
 @pytest.mark.parametrize("strict", [True, False])
 def test_what_is_not_simulated_yet_is_said(strict: bool) -> None:
     data = robot(shape={"name": "compound", "parts": [{"name": "polygon", "random_shape": True, "pose": [1, 0, 0]}]})

@@ -87,13 +87,10 @@ class GradedEpisode:
     def collisions(self, name: str) -> list[tuple[float, str]]:
         """Time and partner of each contact of an object, within steps, too, but for those with passable objects."""
         passable = {body.name for body in self.scene.bodies if body.passable}
-        contacts = []
-        for event in self.events:
-            if event.kind in ("collision", *BETWEEN_STEPS) and name in (event.object, event.partner):
-                partner = partner_of(event, name) or ""
-                if partner not in passable:
-                    contacts.append((event.time, partner))
-        return contacts
+        touches = [event for event in self.events if event.kind in ("collision", *BETWEEN_STEPS)]
+        own = [event for event in touches if name in (event.object, event.partner)]
+        contacts = [(event.time, partner_of(event, name) or "") for event in own]
+        return [contact for contact in contacts if contact[1] not in passable]
 
     def moment(self, time: float) -> float:
         """A time [s]; a negative one counts back from the end."""

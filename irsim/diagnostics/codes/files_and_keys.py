@@ -19,7 +19,8 @@ FILE_AND_YAML: dict[str, Code] = {
     "image-not-found": Code(
         "image named by 'description' not found",
         "`description` names an image that is drawn instead of the shape: a file beside the scenario or the script,"
-        " or a bundled one. Without it the shape is drawn. Addresses such as http: are not fetched.",
+        " or a bundled one. Without it the shape is drawn, but for a car, which is a picture unless it has "
+        "`description: ''`. Addresses such as http: are not fetched.",
     ),
     "unreadable": Code(
         "file cannot be read", "The system refuses to read the file. Check the permissions and the path."

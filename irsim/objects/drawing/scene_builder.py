@@ -366,7 +366,7 @@ def _draw(
                 number, "goal", shape, style.goal_color, stroke, style.goal_alpha, style.goal_zorder
             )
         marks.append(drawn.goal)
-    if view.description is not None and body.kind != "compound" and has_picture(view.description):
+    if view.description and body.kind != "compound" and has_picture(view.description):
         area = (*body.low, body.length, body.width)
         drawn.picture = Picture(
             number,

@@ -76,5 +76,5 @@ def named_files(context: Context) -> Iterator[tuple[Path, str]]:
         written = context.data["world"]["obstacle_map"]
         yield ("world", "obstacle_map") if isinstance(written, str) else ("world", "obstacle_map", "path"), name
     for record in context.entry_objects:
-        if record.description is not None and context.is_given(record, "description"):
+        if record.description and context.is_given(record, "description"):
             yield context.entry_path(record, "description"), record.description

@@ -156,7 +156,8 @@ def _of_seeds(data: WorkerResult, services: Services, given: str, form: str) -> 
     if whole.failed or whole.same:
         said = _whole_text(shown, episode).rpartition("\nRecord: ")
         lines += [f"{'The first that failed, ' * (not whole.same)}seed {shown.seed}{picture}:", said[0]]
-        lines += [*_meetings(data["closest"], shown), "".join(said[1:]).lstrip()]
+        lines += [*_others(shown), *_meetings(data["closest"], shown), *_crossed(data["zones"])]
+        lines.append("".join(said[1:]).lstrip())
     elif picture:
         lines += [*(f"Warning: {warning}" for warning in episode.warnings)]
         lines += [f"Seed {shown.seed}{picture}: {clean(shown.summary, 300)}", f"Next: {advice}"]
@@ -176,6 +177,23 @@ def _table(data: WorkerResult, seed: int) -> list[str]:
     """A line for each entry of the scenario."""
     labels = {robot["name"]: robot["label"] for robot in data["scene"]["robots"]}
     return scene_lines(data["table"], labels, seed)
+
+
+def _others(shown: RunResult) -> list[str]:
+    """A line about when obstacles arrived."""
+    robots = {robot.name for robot in shown.robots}
+    events = [event for event in shown.events if event.kind == "arrival" and event.object not in robots]
+    when = [f"{clean(event.object)!r} at {event.time:g} s" for event in events]
+    return [f"Obstacles arrived: {listed(when, MAX_CONCISE)}"] if when else []
+
+
+def _crossed(zones: list[list[Any]]) -> list[str]:
+    """A line for each zone: who was there from when to when, or crossed it when."""
+    rows: dict[str, list[str]] = {}
+    for zone, name, _, _, time, _, duration, *_ in zones:
+        until = "" if duration is None else f" to {time + duration:g}"
+        rows.setdefault(zone, []).append(f"{clean(name)!r} {time:g}{until} s")
+    return [f"Zone {clean(zone)!r}: {listed(some, MAX_CONCISE)}" for zone, some in rows.items()][:_MAX_LINES]
 
 
 def _meetings(closest: list[list[Any]], shown: RunResult) -> list[str]:
@@ -203,7 +221,9 @@ def _lines(episodes: list[dict[str, Any]]) -> list[str]:
     if more := [str(one["seed"]) for one in failed[_MAX_LINES:]]:
         lines.append(f"- also failed: {', '.join(more)}")
     good = [f"{one['seed']}{_ending(one)}" for one in episodes if one["outcome"] == "success"]
-    return [*lines, f"- success: seed {listed(good, MAX_CONCISE)}"] if good else lines
+    times = [one["sim_time"] for one in episodes if one["outcome"] == "success"]
+    span = f", after {min(times):g} to {max(times):g} s" if len(set(times)) > 1 else ""
+    return [*lines, f"- success: seed {listed(good, MAX_CONCISE)}{span}"] if good else lines
 
 
 def _ending(brief: dict[str, Any]) -> str:

@@ -197,11 +197,8 @@ class Crosses(OfBodies, EpisodePredicate):
         """Look for changes of side."""
         bodies = material.bodies(episode.scene, self.of)
         ways = [] if self.way_of is None else material.bodies(episode.scene, self.way_of)
-        where = (
-            f"{'ahead' if self.ahead else 'the way'} of {self.way_of}"
-            if self.line is None
-            else f"the line {show(list(map(list, self.line)))}"
-        )
+        where = f"{'ahead' if self.ahead else 'the way'} of {self.way_of}"
+        where = where if self.line is None else f"the line {show(list(map(list, self.line)))}"
         expected = f"{self.of} that cross {where}" + (f": {self.number.words()}" if self.number is not None else "")
         expected += f", over at least {self.spread:g} s" if self.spread else ""
         expected += "".join(f", after {time:g} s" for time in self.times or ())
@@ -220,9 +217,8 @@ class Crosses(OfBodies, EpisodePredicate):
         passed = (self.number is None or matches(self.number, len(crossed), "count")) and spread >= self.spread - 1e-9
         if self.times is not None:
             passed = passed and len(crossed) == len(self.times) == sum(len(times) for _, times in all_times)
-            passed = passed and all(
-                abs(a - b) <= self.tol + 1e-9 for (a, _), b in zip(crossed, self.times, strict=True)
-            )
+            pairs = zip(crossed, self.times, strict=True)
+            passed = passed and all(abs(at - wanted) <= self.tol + 1e-9 for (at, _), wanted in pairs)
         seen = summary([(body, f"{time:.1f} s") for time, body in crossed])
         marks = [Mark(points=[list(start), list(end)], text="line")]
         return Observation(passed, expected, f"{len(crossed)}: {seen}", f"{bodies[0].entry}.state", marks=marks)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import shapely
 import shapely.affinity
 
@@ -99,19 +100,23 @@ class Corridor(OfBodies, ScenePredicate):
     """Accepted lengths of the walls on both sides [m], as far as the width holds."""
     start_within: Quantity | None = None
     """Greatest share of the corridor's length that lies before the start and behind the goal."""
+    outside: Quantity = 0.0
+    """Greatest distance of the start before the corridor, and of the goal behind it [m]."""
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure the sections."""
         bodies = travellers(self, material, scene)
-        expected = f"a corridor {self.width.words()} m wide" + (
-            f", {self.length.words()} m long" if self.length is not None else ""
-        )
+        expected = f"a corridor {self.width.words()} m wide"
+        expected += f", {self.length.words()} m long" if self.length is not None else ""
         if not bodies:
             return Observation(False, expected, f"{self.of}: no body with a goal")
         for body in bodies:
-            start, goal = (body.pose[0], body.pose[1]), _end(body)
+            start, goal = _ends(body)
             way = math.dist(start, goal)
             heading = math.atan2(goal[1] - start[1], goal[0] - start[0]) if self.direction is None else self.direction
+            before, behind = self._out(scene, start, heading, way), self._out(scene, goal, heading + math.pi, way)
+            start, goal = along(start, heading, before), along(goal, heading, -behind)
+            way -= before + behind
             sections = self.sections if self.sections == 1 else max(self.sections, math.ceil(way / _LENGTH_STEP) + 1)
             for k in range(sections):
                 at = along(start, heading, way * k / max(1, sections - 1))
@@ -130,18 +135,22 @@ class Corridor(OfBodies, ScenePredicate):
                 return Observation(False, expected, f"{show(max(back, front))} m of it lie before or behind the way")
         return Observation(True, expected, "so it is")
 
-    def _reach(self, scene: GradedScene, start: tuple[float, float], heading: float) -> float:
+    def _out(self, scene: GradedScene, place: Point, heading: float, way: float) -> float:
+        """How far it is from a place to the corridor [m]; 0 if it is farther than allowed."""
+        far = np.arange(0, min(self.outside, way / 2) + 1e-9, _LENGTH_STEP).tolist()
+        return next((d for d in far if _width(scene, along(place, heading, d), heading) < _FAR), 0.0)
+
+    def _reach(self, scene: GradedScene, start: Point, heading: float) -> float:
         """How far the walls go on from a place [m]."""
         x0, y0, x1, y1 = scene.bounds
-        most, done = math.hypot(x1 - x0, y1 - y0), 0.0
-        while done < most and matches(self.width, _width(scene, along(start, heading, done), heading), "length"):
-            done += _LENGTH_STEP
-        return max(0.0, done - _LENGTH_STEP)
+        far: list[float] = np.arange(0, math.hypot(x1 - x0, y1 - y0), _LENGTH_STEP).tolist()
+        widths = ((d, _width(scene, along(start, heading, d), heading)) for d in far)
+        return next((max(0.0, d - _LENGTH_STEP) for d, w in widths if not matches(self.width, w, "length")), far[-1])
 
 
-def _end(body: GradedBody) -> Point:
-    goal = body.goal or [0.0, 0.0]
-    return goal[0], goal[1]
+def _ends(body: GradedBody) -> tuple[Point, Point]:
+    goal = body.goal or body.pose
+    return (body.pose[0], body.pose[1]), (goal[0], goal[1])
 
 
 @register("doorway")
@@ -204,7 +213,7 @@ class Pocket(OfBodies, ScenePredicate):
         if not bodies:
             return Observation(False, expected, f"{self.of}: no body with a goal")
         for body in bodies:
-            start, goal = body.pose[:2], (body.goal or [0.0, 0.0])[:2]
+            start, goal = _ends(body)
             way, heading = math.dist(start, goal), math.atan2(goal[1] - start[1], goal[0] - start[0])
             back = free_length(scene.solid, start, heading, way)
             if back >= way:

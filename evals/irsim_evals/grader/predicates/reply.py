@@ -225,14 +225,12 @@ class Assumptions(AnswerPredicate):
 
     number: Match
     """Accepted numbers of claims that hold."""
-    contradictions: Match = Match(eq=0)
-    """Accepted numbers of claims that do not."""
 
     def observe(self, material: Material) -> Observation:
         """Hold the reply against the world."""
         stated = claims(material.answer.reply, material.scene(0))
         good = [claim.text for claim in stated if claim.holds]
         bad = [claim.text for claim in stated if claim.holds is False]
-        passed = matches(self.number, len(good), "count") and matches(self.contradictions, len(bad), "count")
+        passed = matches(self.number, len(good), "count") and not bad
         observed = f"{len(good)}: {', '.join(good[:6])}" + (f"; not so: {', '.join(bad[:4])}" if bad else "")
         return Observation(passed, f"stated facts that hold: {self.number.words()}, none that do not", observed)
