@@ -137,8 +137,8 @@ class Entry(Options):
     color: Annotated[Any, PerObject(ObjectColor | None)] = None
     """Colour, or `cycle` for a different palette colour per object; null is a colour by role and drive."""
     description: Annotated[Any, PerObject(Text | None)] = None
-    """Picture drawn instead of the footprint: a bundled name or a file; null is a green car for `acker`, and an empty text
-    the plain footprint in `color`."""
+    """Picture drawn instead of the footprint: a bundled name or a file; null is a green car for `acker`, and an empty
+    text the plain footprint in `color`."""
     static: Annotated[Bool, OrNull(False)] = False
     """The object never moves, although it has kinematics."""
     vel_min: Annotated[Any, PerObject(Control | None, "vector")] = None
