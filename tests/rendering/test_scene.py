@@ -53,7 +53,7 @@ def test_a_car_is_a_picture_unless_its_description_is_empty(make: Make) -> None:
     plain, pictured = (make(car % more).simulation for more in (", description: ''", ""))
     shown = [SceneBuilder(each, has_picture=lambda name: True).build() for each in (plain, pictured)]
     assert [[one.name for one in each.pictures] for each in shown] == [[], ["car_green.png"]]
-    assert [len(each.of(0, "body")) for each in shown] == [1, 0]
+    assert [len(list(each.of(0, "body"))) for each in shown] == [1, 0]
 
 
 def test_the_arrow_of_an_omni_drive_points_where_it_goes(make: Make) -> None:
