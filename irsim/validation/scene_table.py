@@ -29,6 +29,8 @@ _MAX_OBJECTS = 6_000
 """Number of objects in all these worlds together; larger scenarios are tried with fewer seeds, at least two."""
 _MAX_ROBOTS = 100
 """Number of robots up to which goals that overlap are counted."""
+_MAX_KINDS = 4
+"""Number of kinds of objects of an entry that have rows of their own."""
 MAX_SHOWN = 6
 """Number of objects of an entry that are described one by one."""
 
@@ -55,13 +57,7 @@ def scene_table(scenario: ResolvedScenario, seed: int | None = None, driven: str
     good = [w for w, seed in enumerate(seeds) if seed not in crowded]
     shown = next((w for w in (0, *good) if w in good), 0)
     drawn = {index for placement in scenario.placements for index in placement.objects}
-    entries = [
-        list(entry)
-        for _, entry in itertools.groupby(
-            (k for k, record in enumerate(scenario.objects) if not record.is_terrain),
-            key=lambda k: scenario.objects[k].path,
-        )
-    ]
+    entries = _alike(scenario.objects)
     rows = [_row(scenario, entry, state, built.objects, shown, good if drawn & set(entry) else []) for entry in entries]
     if driven is not None:
         rows = [
@@ -77,6 +73,19 @@ def scene_table(scenario: ResolvedScenario, seed: int | None = None, driven: str
         lidars=lidar_hits(scenario, seeds[shown]) if good else [],
         passages=find_passages(scenario, state, shown, seeds[shown]) if good else [],
     )
+
+
+def _alike(records: Sequence[ObjectRecord]) -> list[list[int]]:
+    """Objects of each row of the table: those of an entry, or of each kind in it if there are a few kinds."""
+    numbers = (k for k, record in enumerate(records) if not record.is_terrain)
+    rows: list[list[int]] = []
+    for _, entry in itertools.groupby(numbers, key=lambda k: records[k].path):
+        kinds: dict[str, list[int]] = {}
+        for k in entry:
+            one = records[k]
+            kinds.setdefault(repr((one.kinematics, one.behavior, one.sensors, one.static, one.vel_max)), []).append(k)
+        rows += kinds.values() if len(kinds) <= _MAX_KINDS else [sorted(itertools.chain(*kinds.values()))]
+    return rows
 
 
 def _row(

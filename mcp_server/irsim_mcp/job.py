@@ -11,16 +11,15 @@ import json
 import os
 import sys
 import time
-import traceback
 from collections.abc import Callable
-from contextlib import nullcontext, suppress
+from contextlib import nullcontext
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irsim.common.child import answers, end_with_input, limit, write_to_pipe
-from irsim.common.held import current, hold_for_good, not_held
-from irsim.common.text import clean
+from irsim.common.held import hold_for_good, not_held
+from irsim_mcp.job_errors import error_data
 
 if TYPE_CHECKING:
     from irsim.results.picture import SnapshotResult
@@ -32,8 +31,6 @@ _MAX_NEAR = 10
 """Number of objects that can move, up to which several episodes tell of how near they came to one another."""
 _PROGRESS_PERIOD_S = 0.5
 """Least time between two progress messages [s]."""
-_MAX_FINDINGS = 3
-"""Number of errors of a scenario that an answer lists."""
 _MAX_FILES = 256
 """Number of files that a worker may have open."""
 
@@ -53,7 +50,7 @@ def main() -> None:
         result = _TASKS[job["task"]](job, _Progress(answer))
         answer(f'{{"result": {result}}}')
     except Exception as error:
-        answer(json.dumps({"error": _error_data(error)}))
+        answer(json.dumps({"error": error_data(error)}))
     os._exit(0)  # at once: there is nothing to clean up
 
 
@@ -118,18 +115,23 @@ def _run(job: dict[str, Any], progress: _Progress) -> str:
 
 def _run_seeds(job: dict[str, Any], progress: _Progress) -> str:
     """Run several episodes, and draw and describe the first that failed, or else the first."""
+    from irsim.api import validate
     from irsim.api.run_seeds import run_seeds
     from irsim.scenario.open import read_scenario
     from irsim.validation.scene_table import scene_table
 
-    path, text = (job["arguments"].get(key) for key in ("path", "text"))
+    given = {key: job["arguments"].get(key) for key in ("path", "text")}
+    base = {key: job["arguments"].pop(key) for key in ("base", "base_text") if key in job["arguments"]}
     result = _recorded(run_seeds, job, progress)
-    shown, answer = result.shown, dict[str, Any](png="", scene=None, table=None, closest=[], zones=[])
+    shown, answer = result.shown, dict[str, Any](png="", scene=None, table=None, closest=[], zones=[], changes=None)
+    if base:
+        report = validate(**given, **base, strict=True, simulate=True, seed=shown.seed, limits=_limits(job))
+        answer["changes"] = None if report.changes is None else report.changes.model_dump(mode="json")
     if shown.run_id is not None:
         drawn = {"size": 600, "overlays": None, "region": None, "draw": True, "strip": None}
         job["arguments"] = {"run_id": shown.run_id, "steps": shown.decisive_step or shown.steps, **drawn}
         answer |= json.loads(_run_snapshot(job, _Progress(lambda line: None)))
-        scenario, _ = read_scenario(path, text=text, strict=True, limits=_limits(job))
+        scenario, _ = read_scenario(**given, strict=True, limits=_limits(job))
         answer["table"] = scene_table(scenario, shown.seed).model_dump(mode="json")
         if len(shown.robots) + len(answer["scene"]["moving"]) <= _MAX_NEAR:
             for view in ("closest", *(["zones"] if scenario.world.zones else [])):
@@ -345,53 +347,6 @@ _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "lookup": _lookup,
     "schema": _schema,
 }
-
-
-def _error_data(error: Exception) -> dict[str, Any]:
-    """An exception as data."""
-    from irsim.diagnostics.diagnostic import format_path
-    from irsim.diagnostics.errors import IrsimError, PlacementError, ScenarioError, ScenarioNotFoundError, said_by_core
-
-    if isinstance(error, PlacementError):
-        first = error.diagnostics[0]
-        return {"code": first.code, "what": first.message, "where": format_path(first.path), "fix": first.fix}
-    if isinstance(error, ScenarioError):
-        errors = [item for item in error.diagnostics if item.severity == "error"]
-        own = ("code", "line", "file", "fix")
-        named = [
-            {"what": one.message, "where": format_path(one.path), **{key: getattr(one, key) for key in own}}
-            for one in errors[:_MAX_FINDINGS]
-        ]
-        return {"code": "invalid-scenario", "errors": len(errors), "first": named}
-    if isinstance(error, ScenarioNotFoundError):
-        return {"code": "file-not-found", "what": "the scenario file no longer exists"}
-    if isinstance(error, IrsimError):
-        code = getattr(error, "code", "invalid-input")
-        what = getattr(error, "message", str(error))
-        where = getattr(error, "where", None)
-        return {"code": code, "what": what, "fix": getattr(error, "fix", None), "where": where}
-    if isinstance(error, MemoryError):
-        what = said_by_core(error) or "the work needs more memory than a worker may use"
-        return {"code": "out-of-memory", "what": what, "fix": "use fewer objects, lidar beams or steps"}
-    if isinstance(error, OSError) and (name := _own_file(error)) is not None:
-        what = f"{clean(name)!r} cannot be read or written: {error.strerror or error}"
-        return {"code": "file-access", "what": what, "fix": "call again: another program seems to change the workspace"}
-    traceback.print_exception(error)
-    frame = traceback.extract_tb(error.__traceback__)[-1]
-    place = f"{os.path.basename(frame.filename)}:{frame.lineno}"
-    return {
-        "code": "internal-error",
-        "what": f"{type(error).__name__}: {error} at {place}",
-        "fix": "none in the scenario: this is a fault of the simulator; please report it with the scenario",
-    }
-
-
-def _own_file(error: OSError) -> str | None:
-    """The file of the workspace that an error of the system is about; None for other files."""
-    folder = current()
-    with suppress(OSError, TypeError):
-        return None if folder is None or error.filename is None else folder.below(error.filename)
-    return None
 
 
 if __name__ == "__main__":

@@ -40,8 +40,8 @@ _INSTRUCTIONS = """\
 irsim simulates robots that drive in a flat world: walls and obstacles, several robots, lidars, collisions. A scenario \
 is one YAML document with the keys world, robot and obstacle; lengths are m, times s, angles rad, x points right, y up.
 Work in this order: lookup (all topics in one call, then the nearest template; for a file of the user only what you \
-change) -> edit the YAML -> validate_scenario checks it, render_snapshot draws it (with base: what an edit changed), \
-run_episode with seeds=3 does both and runs it, in one call -> if it failed, inspect_run, edit and repeat. To compare \
+change) -> edit the YAML -> validate_scenario checks it, render_snapshot draws it, run_episode with seeds=3 does both \
+and runs it, in one call (with base: what an edit changed) -> if it failed, inspect_run, edit and repeat. To compare \
 behaviors: benchmark, then get_job while it runs. Do not guess keys: lookup explains them, misspelt ones are errors. \
 Say what cannot be done instead of leaving it out.
 Scenarios are given as text (scenario_yaml) or as a file (scenario_path) inside the workspace {workspace}. The server \

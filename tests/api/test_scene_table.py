@@ -202,3 +202,21 @@ def test_the_row_of_a_car_says_where_its_pose_is_and_how_far_its_body_reaches(tm
 def test_ranges_over_seeds_are_told_to_the_centimetre(tmp_path: Path) -> None:
     (line,) = [line for line in lines(SWAP, tmp_path).splitlines() if "'robot_0'" in line]
     assert all(len(value.rpartition(".")[2]) == 2 for value in line.split(" starts x ")[1].split(" y ")[0].split(".."))
+
+
+def test_the_kinds_of_objects_of_an_entry_have_rows_of_their_own(tmp_path: Path) -> None:
+    """Of two objects that differ in more than their places; of many kinds there is one row."""
+    fleet = (
+        "world: {width: 9, height: 9}\nrobot: {number: 3, kinematics: {name: diff}, state: [[1, 1], [1, 3], [1, 5]], "
+        "goal: [8, 8], behavior: [{name: orca}, {name: dash}, {name: orca}], vel_max: [%s]}\n"
+    )
+    table = lines(fleet % "1, 1", tmp_path)
+    assert "- 2 x diff, circle r 1, orca, vel_max [1, 1]: 'robot_0' at (1.00, 1.00)" in table
+    assert "; 'robot_2' at (1.00, 5.00)" in table
+    assert "- diff, circle r 1, dash, vel_max [1, 1]: 'robot_1' at (1.00, 3.00)" in table
+    speeds = ", ".join(f"[{k / 10}, 1]" for k in range(1, 7))
+    states = ", ".join(f"[1, {k}]" for k in range(1, 7))
+    many = fleet.replace("number: 3", "number: 6").replace("[[1, 1], [1, 3], [1, 5]]", f"[{states}]")
+    assert "- 6 x diff" in lines(
+        many.replace("[{name: orca}, {name: dash}, {name: orca}]", "{name: dash}") % speeds, tmp_path
+    )

@@ -207,12 +207,12 @@ async def test_what_was_let_go_can_be_made_again(client: Caller, workspace: Path
 
 
 def test_a_fault_of_ours_points_at_no_argument() -> None:
-    from irsim_mcp.job import _error_data
+    from irsim_mcp.job_errors import error_data
     from irsim_mcp.services import as_failure
 
     with pytest.raises(ZeroDivisionError) as crash:
         _ = 1 / 0
-    told = str(as_failure(_error_data(crash.value), "path"))
+    told = str(as_failure(error_data(crash.value), "path"))
     assert told.startswith("internal-error: ZeroDivisionError: division by zero")
     assert "scenario_path" not in told
     assert "a fault of the simulator" in told

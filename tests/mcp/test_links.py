@@ -21,6 +21,7 @@ from PIL import Image
 
 from irsim.policies.networks import save_network
 from irsim_mcp import job
+from irsim_mcp.job_errors import error_data
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
 from tests.mcp import swapping as swapper
@@ -76,7 +77,7 @@ class Place:
             try:
                 return job._TASKS[task](work, job._Progress(lambda _: None))
             except Exception as error:
-                data = job._error_data(error)
+                data = error_data(error)
                 return f"{data['code']} {data}"
 
     def exported(self, to: str) -> dict[str, Any]:

@@ -161,3 +161,16 @@ async def test_the_median_answer_is_short(client: Caller) -> None:
             result = await client.call("run_episode", scenario_yaml=text, max_steps=60, **seeds)
             sizes.append(len(text_of(result).encode()))
         assert statistics.median(sizes) <= 1_500, (seeds, sorted(sizes))
+
+
+async def test_an_edit_is_run_and_compared_with_its_base_in_one_call(client: Caller) -> None:
+    told = await client.text("run_episode", scenario_yaml=ROOM.replace("0.3}", "0.4}"), base=ROOM)
+    assert "Changes: 1 key differs: robot[0].shape.radius" in told
+    assert "- changed robot[0].shape.radius: 0.3 -> 0.4" in told
+    assert "Next: If the picture is right, report it: every run is this one." in told
+    free = CRASH.replace("state: [4, 1, 0]", "state: [4, 4, 0]")
+    told = await client.text("run_episode", scenario_yaml=CRASH, base=free, seeds=1)
+    assert "Next: The edit causes a collision ('rover' hits 'crate' at " in told
+    assert "not forbidden other changes" in told
+    told = await client.text("run_episode", scenario_yaml=ROOM, base="no: {such")
+    assert "the worlds are not compared: one of the scenarios is invalid" in told

@@ -21,6 +21,7 @@ from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_RUN_SEEDS, MAX_SEED, MAX_STEPS
 from irsim_mcp.resources import PAGE, uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, reporter, strict
+from irsim_mcp.tools.validate_scenario import caused, changes_of, new_collisions
 
 __all__ = ["PLACE", "tool"]
 
@@ -60,6 +61,7 @@ def tool(services: Services) -> StrictTool:
             WithJsonSchema({"type": ["integer", "string", "array"]}),
             Field(description=f"Several, at most {MAX_RUN_SEEDS}: 3, '0..19', [1, 4]."),
         ] = None,
+        base: Annotated[str | None, Field(description="Scenario before an edit; with seeds.")] = None,
         policy: Annotated[str | None, Field(max_length=500, description="Of all robots, as in benchmark.")] = None,
         perturb: Annotated[str | None, Field(max_length=500, description="As in benchmark.")] = None,
         max_steps: Annotated[
@@ -82,7 +84,9 @@ def tool(services: Services) -> StrictTool:
     ) -> Annotated[CallToolResult, ConciseRun]:
         if seeds is not None and seed is not None:
             raise failure("bad-argument", "seed and seeds are given", where="seeds", fix="give one of them")
-        several = {} if seeds is None else {"seeds": _few(seeds), "wall_s": _SHARE * max_wall_s}
+        if base is not None and seeds is None:
+            seeds = 1 if seed is None else [seed]
+        several = {} if seeds is None else {"seeds": _few(seeds), "wall_s": _SHARE * max_wall_s, **services.base(base)}
         data = await services.scenario_job(
             "run_seeds" if several else "run",
             scenario_path,
@@ -146,11 +150,14 @@ def _of_seeds(data: WorkerResult, services: Services, given: str, form: str) -> 
         services.note("looked", given)
     shown.warnings = whole.warnings
     artifacts = None if shown.run_id is None else {name: uri(shown.run_id, name) for name in _ARTIFACTS}
-    advice = _advice_on_seeds(whole, given, bool(png))
+    advice, hits = _advice_on_seeds(whole, given, bool(png)), new_collisions(data["changes"])
+    advice = caused(hits) if hits else advice
+    changes = changes_of(data["changes"], detailed) or []
     episode = shown.concise(detailed=detailed, artifacts=artifacts, advice=advice)
     episode.summary = clean(f"{whole.summary}. Seed {shown.seed}: {episode.summary}", 600)
     episode.episodes = [_brief(one) for one in whole.episodes]
     lines = [f"{whole.summary}.", *(_lines(episode.episodes) if len(episode.episodes) > 1 else ()), _found(whole)]
+    lines += [f"{'Changes: ' if not k else '- '}{line}" for k, line in enumerate(changes)]
     lines += table
     picture = f" (the picture shows step {shown.decisive_step or shown.steps})" if png else ""
     if whole.failed or whole.same:
@@ -184,7 +191,7 @@ def _others(shown: RunResult) -> list[str]:
     robots = {robot.name for robot in shown.robots}
     events = [event for event in shown.events if event.kind == "arrival" and event.object not in robots]
     when = [f"{clean(event.object)!r} at {event.time:g} s" for event in events]
-    return [f"Obstacles arrived: {listed(when, MAX_CONCISE)}"] if when else []
+    return [f"Obstacles at their last goals: {listed(when, MAX_CONCISE)}"] if when else []
 
 
 def _crossed(zones: list[list[Any]]) -> list[str]:
@@ -193,7 +200,7 @@ def _crossed(zones: list[list[Any]]) -> list[str]:
     for zone, name, _, _, time, _, duration, *_ in zones:
         until = "" if duration is None else f" to {time + duration:g}"
         rows.setdefault(zone, []).append(f"{clean(name)!r} {time:g}{until} s")
-    return [f"Zone {clean(zone)!r}: {listed(some, MAX_CONCISE)}" for zone, some in rows.items()][:_MAX_LINES]
+    return [f"Zone {clean(zone)!r}: {listed(some, MAX_CONCISE)}" for zone, some in rows.items()][:MAX_CONCISE]
 
 
 def _meetings(closest: list[list[Any]], shown: RunResult) -> list[str]:

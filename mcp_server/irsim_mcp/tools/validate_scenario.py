@@ -162,10 +162,7 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
             "Nothing but comments and layout differs from base, so there is nothing to look at or to run: deliver it."
         )
     elif hits := new_collisions(data["changes"]):
-        advice = (
-            f"The edit causes a collision ({hits[0]}): report it first and offer a fix; apply it only if the user has "
-            "not forbidden other changes. Then run_episode"
-        )
+        advice = f"{caused(hits)} Then run_episode"
     else:
         advice = _next_of_valid(data, looked)
     return Report(
@@ -177,7 +174,7 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
         issues=issues,
         truncated=cut > 0,
         dry_run=None if same and not detailed else _dry_run_text(data["dry_run"], detailed),
-        changes=_changes(data["changes"], detailed),
+        changes=changes_of(data["changes"], detailed),
         next=advice,
     )
 
@@ -221,8 +218,14 @@ def new_collisions(difference: dict[str, Any] | None) -> list[str]:
     return [line.removeprefix("new: ") for line in motion if line.startswith("new: ") and " hits " in line]
 
 
-def _changes(difference: dict[str, Any] | None, detailed: bool) -> list[str] | None:
-    """The summary of the changes, and one line per change."""
+def caused(hits: list[str]) -> str:
+    """The advice on an edit that causes collisions."""
+    first = f"The edit causes a collision ({hits[0]}): report it first and offer a fix;"
+    return f"{first} apply it only if the user has not forbidden other changes."
+
+
+def changes_of(difference: dict[str, Any] | None, detailed: bool) -> list[str] | None:
+    """The summary of the changes, and one line per change; None without a base."""
     if difference is None:
         return None
     most = _MAX_CHANGES if detailed else _MAX_CHANGES // 4
