@@ -69,7 +69,7 @@ def draw_strip(
             if move is not None:
                 move(moment)
             else:
-                advance(env, moment - before, None, until_done=False)
+                advance(env, moment - before, None, until="time_limit")
         except PolicyLostError:
             if not may_be_lost:
                 raise

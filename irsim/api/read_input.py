@@ -14,9 +14,10 @@ from irsim.results.findings import Finding
 from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.limits import Limits
 from irsim.scenario.open import read_scenario as read_one
+from irsim.scenario.perturbation import Perturbations, perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["opened_policy", "policy_of_suite", "read_scenario"]
+__all__ = ["opened_policy", "policy_of_suite", "read_scenario", "rules_of_suite"]
 
 
 def read_scenario(
@@ -26,6 +27,7 @@ def read_scenario(
     strict: bool,
     limits: Limits | None = None,
     behavior: str | None = None,
+    perturb: Perturbations | None = None,
 ) -> tuple[ResolvedScenario, list[Finding]]:
     """Read a scenario from a file, a suite or a text; see :func:`irsim.scenario.open.read_scenario`.
 
@@ -35,6 +37,7 @@ def read_scenario(
         strict: Refuse what IR-SIM would ignore.
         limits: Limits of the loader.
         behavior: Replaces every robot's own behavior.
+        perturb: Perturbations; None: those of the suite, if ``path`` is of one.
 
     Returns:
         The scenario, ready to build, and the warnings and hints about it.
@@ -54,7 +57,25 @@ def read_scenario(
         if named is not None and scene is None:
             suite_scene(named)  # a suite is refused with a sentence of its own
         raise
-    return scenario, [Finding.of(item) for item in diagnostics]
+    chosen = read_perturbations(rules_of_suite(path, text)[0] if perturb is None else perturb)
+    return perturbed(scenario, chosen) if chosen else scenario, [Finding.of(item) for item in diagnostics]
+
+
+def rules_of_suite(path: Any, text: str | None = None) -> tuple[list[str], str]:
+    """Perturbations and the end of an episode that a suite adds to ``SUITE/SCENARIO``; of other scenarios none.
+
+    Args:
+        path: As :func:`irsim.run` takes it.
+        text: The same.
+
+    Raises:
+        SuiteError: The suite is not valid.
+    """
+    if text is not None or not isinstance(path, (str, os.PathLike)) or Path(path).is_file():
+        return [], "done"
+    from irsim.benchmarks.suite_plan import suite_rules
+
+    return suite_rules(Path(path)) or ([], "done")
 
 
 def policy_of_suite(path: str | Path | None, policy: Any) -> Any:

@@ -164,7 +164,7 @@ def write_picture(
         if move is not None:
             move(steps)
         else:
-            advance(env, steps, progress, until_done=False)
+            advance(env, steps, progress, until="time_limit")
         files = [str(env.save_figure(target.absolute()))]
     result = RenderResult(
         seed=env.seed,

@@ -7,9 +7,9 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
-from irsim.api.read_input import opened_policy, read_scenario
+from irsim.api.read_input import opened_policy, read_scenario, rules_of_suite
 from irsim.api.render_scenario import animate
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.connect import connect, open_bridges
@@ -27,7 +27,7 @@ from irsim.runs.recorder import recording
 from irsim.scenario.checks.bridges import driven_without_goal
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import import_modules
-from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
+from irsim.scenario.perturbation import Perturbations, perturbation_text, read_perturbations
 from irsim.simulation.events import read_events
 from irsim.simulation.random_streams import fresh_seed
 
@@ -49,7 +49,7 @@ def run(
     policy: PolicySource | None = None,
     behavior: str | Mapping[str, Any] | None = None,
     perturb: Perturbations | None = None,
-    until: Until = "done",
+    until: Until | None = None,
     bridges: Sequence[str | Mapping[str, Any]] = (),
     imports: Sequence[str] = (),
     save: str | Path | None = None,
@@ -75,8 +75,10 @@ def run(
             timeHorizon: 5}``), a file (``model.npz``), a function of observations, or a policy.
         behavior: Another name of ``policy``.
         perturb: Starts, speeds and delays that differ from the scenario, as the seed draws them: see
-            :func:`irsim.benchmark`.
-        until: ``time_limit`` lets the run go on to its horizon: a robot with ``loop`` patrols on after its first lap.
+            :func:`irsim.benchmark`. Default: those of the suite, if ``path`` is of one; an empty list is none.
+        until: ``done`` ends the run when every robot has arrived or stopped; ``time_limit`` lets it go on to its
+            horizon: a robot with ``loop`` patrols on after its first lap; ``first_collision`` also ends it when a
+            robot collides, unless it is shown or saved. Default: as the suite of ``path`` says, else ``done``.
         bridges: Connections to other programs, which the scenario does not name: mappings such as ``{"name":
             "json_lines"}``, or their text. Each takes part in the steps.
         imports: Modules to import first, for behaviors that they register.
@@ -108,17 +110,20 @@ def run(
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
-    perturbations = read_perturbations(perturb)
+    rules = rules_of_suite(path, text)
+    perturbations = read_perturbations(rules[0] if perturb is None else perturb)
+    until = cast("Until", rules[1]) if until is None else until
     driver, behavior = opened_policy(path, policy, behavior, limits)
     try:
-        scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=behavior)
+        scenario, warnings = read_scenario(
+            path, text=text, strict=strict, limits=limits, behavior=behavior, perturb=perturbations
+        )
     except InputError as error:
         if error.where == "behavior" and policy is not None:
             error.where = "policy"
         raise
     if driver is not None:
         warnings = findings_under_policy(warnings, scenario)
-    scenario = perturbed(scenario, perturbations) if perturbations else scenario
     chosen, hidden = seed_of(scenario, seed), save is None and not show
     env, crowded = first_with_room(
         lambda drawn: Env(scenario, seed=drawn, display=show, headless=hidden, log_level="ERROR", policy=driver),
@@ -155,9 +160,9 @@ def run(
         files, lost = list[str](), None
         try:
             if save is None and not show:
-                advance(env, horizon, progress, until_done=until == "done", recorder=recorder)
+                advance(env, horizon, progress, until=until, recorder=recorder)
             else:
-                target, on = Path(save) if save is not None else None, until != "done"
+                target, on = Path(save) if save is not None else None, until == "time_limit"
                 files = animate(env, horizon, target, progress, recorder, go_on=on)
         except (PolicyLostError, BridgeLostError) as error:
             lost = error

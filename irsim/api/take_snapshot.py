@@ -148,7 +148,7 @@ def snapshot_of(
     horizon, _ = horizon_of(env.simulation, steps, limits or DEFAULT_LIMITS)
     chosen: list[int] | None = None
     if strip is None or steps is None:
-        advance(env, horizon, progress, until_done=steps is None)
+        advance(env, horizon, progress, until="time_limit" if steps is not None else "done")
     if strip is not None:
         last = int(env.simulation.count[0]) if steps is None else steps
         chosen = moments_of(last, strip)
@@ -222,7 +222,7 @@ def snapshot_of_env(
     elif moments is not None and move is not None:
         move(moments[-1])
     elif moments is not None:
-        advance(env, moments[-1], progress, until_done=False)
+        advance(env, moments[-1], progress, until="time_limit")
     ways = requested_plans(env, overlays)
     if moments is None and draw:
         from irsim.rendering.snapshot import render_scene

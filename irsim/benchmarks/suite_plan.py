@@ -8,6 +8,7 @@ from pathlib import Path
 
 import yaml
 
+from irsim.benchmarks.episode import Until
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes, short_hash
 from irsim.benchmarks.policies import files_of
 from irsim.benchmarks.suite import SUITES, Protocol, Suite, SuiteError, is_suite, load_suite
@@ -16,7 +17,7 @@ from irsim.diagnostics.diagnostic import nearest, suggestion
 from irsim.scenario.behavior_override import behavior_text
 from irsim.scenario.perturbation import perturbation_text, read_perturbations
 
-__all__ = ["suite_plan", "suite_policy", "suite_scene"]
+__all__ = ["suite_plan", "suite_policy", "suite_rules", "suite_scene"]
 
 
 def suite_plan(
@@ -176,6 +177,22 @@ def suite_policy(name: str | Path, policy: str) -> str:
     suite = None if parts is None else load_suite(parts[0])[0]
     own = {} if suite is None else suite.known_policies
     return behavior_text(own[policy]) if policy in own else policy
+
+
+def suite_rules(name: str | Path) -> tuple[list[str], Until] | None:
+    """The rules of a suite for each episode of a scenario of it: perturbations as text, and when an episode ends.
+
+    Args:
+        name: ``SUITE/SCENARIO``, or another scenario, of which there are none.
+
+    Raises:
+        SuiteError: The suite is not valid.
+    """
+    parts = _split(name)
+    if parts is None:
+        return None
+    suite = load_suite(parts[0])[0]
+    return [perturbation_text(item) for item in suite.perturb], suite.until
 
 
 def _split(name: str | Path) -> tuple[str, str] | None:

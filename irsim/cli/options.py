@@ -44,9 +44,11 @@ MaxObjects = Annotated[
     typer.Option(min=1, help="Maximum number of objects in a scenario. Default: 100000.", show_default=False),
 ]
 Until = Annotated[
-    Literal["done", "time_limit"],
+    Literal["done", "time_limit", "first_collision"] | None,
     typer.Option(
         help="When to end: when every robot has arrived or stopped, one with loop at the end of its first lap (done), "
-        "or at the time limit, so that it patrols on (time_limit)."
+        "at the time limit, so that it patrols on (time_limit), or also when a robot collides (first_collision). "
+        "Default: done; of a scenario of a suite, as the suite says.",
+        show_default=False,
     ),
 ]

@@ -63,7 +63,7 @@ def run(
     ] = None,
     behavior: Annotated[str | None, typer.Option(metavar="NAME", help="Another name of --policy.", hidden=True)] = None,
     perturb: Perturb = None,
-    until: Until = "done",
+    until: Until = None,
     bridge: Annotated[
         list[str] | None,
         typer.Option(

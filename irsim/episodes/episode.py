@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 from irsim.common.arguments import check_whole_number
 from irsim.diagnostics.errors import OverLimitError
 from irsim.env import Env
-from irsim.results.run import HorizonSource
+from irsim.results.run import HorizonSource, Until
 from irsim.scenario.limits import Limits
 from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
 from irsim.simulation.build import steps_until
+from irsim.simulation.events import first_collisions
 from irsim.simulation.time_limit import default_time_limit
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def _most_steps(objects: int, limits: Limits) -> tuple[int | None, str]:
 
 
 def advance(
-    env: Env, steps: int, progress: Progress | None, *, until_done: bool = True, recorder: EpisodeRecorder | None = None
+    env: Env, steps: int, progress: Progress | None, *, until: Until = "done", recorder: EpisodeRecorder | None = None
 ) -> None:
     """Advance an environment, by default until every robot has arrived or stopped.
 
@@ -77,12 +78,20 @@ def advance(
         env: The environment.
         steps: Greatest number of steps.
         progress: Callback ``(steps_done, steps_total)``.
-        until_done: End as soon as every robot has arrived or stopped.
+        until: See :func:`irsim.run`.
         recorder: Records the steps.
     """
+    until_done, touches = until != "time_limit", until == "first_collision"
+    chunk = 1 if touches else _CHUNK_STEPS
     done, over = 0, until_done and bool(env.done())
     while done < steps and not over:
-        done += max(1, env.advance(min(_CHUNK_STEPS, steps - done), until_done=until_done, recorder=recorder))
-        over = until_done and bool(env.done())
+        done += max(1, env.advance(min(chunk, steps - done), until_done=until_done, recorder=recorder))
+        over = (until_done and bool(env.done())) or (touches and _has_collided(env))
         if progress is not None:
             progress(done, done if over else steps)  # the count ends at its total
+
+
+def _has_collided(env: Env) -> bool:
+    """Whether a robot has touched something."""
+    hits = first_collisions(env.simulation, env.events)
+    return any(robot.name in hits for robot in env.robot_list)

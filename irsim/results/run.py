@@ -27,7 +27,7 @@ __all__ = [
 
 HorizonSource = Literal["argument", "scenario", "default", "limits"]
 """Where the time limit of a run comes from."""
-Until = Literal["done", "time_limit"]
+Until = Literal["done", "time_limit", "first_collision"]
 """When a run ends: when every robot has arrived or stopped, as in IR-SIM, or at its time limit."""
 MAX_CONCISE = 10
 """Number of robots and events in a concise result."""
@@ -56,7 +56,7 @@ class RunResult(Result):
     """Perturbations of starts, speeds and delays, as on the command line."""
     until: Until = "done"
     """``done``: the run ends when every robot has arrived or stopped, one with ``loop`` at the end of its first lap;
-    ``time_limit``: it goes on to its time limit."""
+    ``time_limit``: it goes on to its time limit; ``first_collision``: it also ends when a robot collides."""
     outcome: Literal["success", "collision", "timeout"]
     """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``, also if the run
     ended early because something was ``lost``."""

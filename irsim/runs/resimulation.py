@@ -78,7 +78,7 @@ def resimulate(
     if has_modules(run):
         follow_record(run, env)(wanted)
         return env
-    advance(env, wanted, progress, until_done=False)
+    advance(env, wanted, progress, until="time_limit")
     check_reproduced(run, env)
     return env
 

@@ -159,10 +159,11 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.episodes.opening import MAX_TRIES
     from irsim.results.findings import Finding
     from irsim.scenario.open import read_scenario
+    from irsim.scenario.perturbation import perturbed, read_perturbations
 
     arguments, limits = job["arguments"], _limits(job)
     path, text = arguments.pop("path", None), arguments.pop("text", None)
-    checked = ""
+    checked, perturbations = "", read_perturbations(arguments.pop("perturb", []))
     base = {key: arguments.pop(key) for key in ("base", "base_text") if key in arguments}
     if arguments.pop("check"):
         from irsim.api import validate
@@ -178,6 +179,7 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
             changed = dict.fromkeys(item.object for item in report.changes.world if item.object is not None)
             arguments |= {"base": other, "changed": list(changed)}
     scenario, told = read_scenario(path, text=text, strict=True, limits=limits)
+    scenario = perturbed(scenario, perturbations) if perturbations else scenario
     if arguments["draw"]:
         _load_elsewhere("irsim.rendering.snapshot")
     warnings = [Finding.of(item) for item in told]
@@ -311,6 +313,13 @@ def _suite_policy(job: dict[str, Any], progress: _Progress) -> str:
     return json.dumps({"text": suite_policy(**job["arguments"])})
 
 
+def _suite_rules(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim.benchmarks.suite_plan import suite_rules
+
+    perturb, until = suite_rules(**job["arguments"]) or ([], "done")
+    return json.dumps({"perturb": perturb, "until": until})
+
+
 def _suite_scene(job: dict[str, Any], progress: _Progress) -> str:
     from irsim_mcp.suites import scenario_of_suite
 
@@ -343,6 +352,7 @@ _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "artifact": _artifact,
     "suite_plan": _suite_plan,
     "suite_policy": _suite_policy,
+    "suite_rules": _suite_rules,
     "suite_scene": _suite_scene,
     "lookup": _lookup,
     "schema": _schema,

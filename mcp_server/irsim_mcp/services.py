@@ -271,6 +271,12 @@ class Services:
         arguments = {"name": given, "policy": policy}
         return str((await self._read("suite_policy", arguments, "policy"))["text"])
 
+    async def suite_rules(self, given: str | None) -> dict[str, Any]:
+        """Perturbations and ``until`` of the suite that ``given`` names a scenario of; empty for other scenarios."""
+        if given is None or suite_of(given) is None:
+            return {}
+        return dict(await self._read("suite_rules", {"name": given}, "scenario_path"))
+
     async def suite_plan(self, **arguments: Any) -> dict[str, Any]:
         """The plan of a benchmark of a suite, as data; arguments as of :func:`irsim_mcp.suites.plan_of`.
 

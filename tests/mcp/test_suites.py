@@ -176,3 +176,13 @@ async def test_contacts_between_people_are_in_the_first_line(client: Caller, wor
         in text_of(many).splitlines()[0]
     )
     assert data_of(many)["rows"][0]["incidents"] == {"human_contacts": 3}
+
+
+async def test_an_episode_of_a_suite_is_run_and_drawn_as_the_suite_runs_it(client: Caller) -> None:
+    name = next(f"circle_swap_v1/{one.name}" for one in suite_plan("circle_swap_v1").scenarios)
+    own = irsim.run(name, seed=3, policy="dash")
+    told = await client.data("run_episode", scenario_path=name, seed=3, policy="dash", response_format="detailed")
+    assert [robot["pose"] for robot in told["robots"]] == [[round(x, 3) for x in robot.pose] for robot in own.robots]
+    start = irsim.run(name, seed=3, steps=0)
+    x, y, _ = start.robots[0].pose
+    assert f"'robot_0' (r0) at ({x:.2f}, {y:.2f})" in await client.text("render_snapshot", scenario_path=name, seed=3)

@@ -88,6 +88,8 @@ def tool(services: Services) -> StrictTool:
             raise failure("bad-argument", "base is compared at step 0 of a scenario only", where="base", fix=fix)
         if run_id is None:
             what["check"] = step == 0 and strip is None
+            rules = await services.suite_rules(scenario_path)
+            what["perturb"] = rules.get("perturb", [])
             answer = await services.scenario_job("snapshot", scenario_path, scenario_yaml, seed=seed, **what)
         elif scenario_path or scenario_yaml or seed is not None:
             fix = "give run_id alone: the run has its scenario and its seed"

@@ -87,6 +87,7 @@ def tool(services: Services) -> StrictTool:
         if base is not None and seeds is None:
             seeds = 1 if seed is None else [seed]
         several = {} if seeds is None else {"seeds": _few(seeds), "wall_s": _SHARE * max_wall_s, **services.base(base)}
+        rules = await services.suite_rules(scenario_path)
         data = await services.scenario_job(
             "run_seeds" if several else "run",
             scenario_path,
@@ -96,8 +97,8 @@ def tool(services: Services) -> StrictTool:
             **(several or {"seed": seed}),
             steps=max_steps,
             policy=await services.suite_policy(scenario_path, policy),
-            perturb=perturb,
-            until=until,
+            perturb=rules.get("perturb") if perturb is None else perturb,
+            until=rules.get("until", until) if until == "done" else until,
         )
         given = services.given(scenario_path, scenario_yaml)
         services.note("ran", given)
