@@ -46,19 +46,18 @@ def read_scenario(
         SuiteError: ``path`` is a suite, or begins with one that has no such scenario.
         Others: as ``irsim.scenario.open.read_scenario``.
     """
-    from irsim.benchmarks.suite_plan import suite_scene
-
     named = Path(path) if isinstance(path, (str, os.PathLike)) and text is None else None
-    scene = None if named is None or named.is_file() else suite_scene(named)
+    scene = None if named is None or named.is_file() else _suites().suite_scene(named)
     try:
         source = path if scene is None else scene.document()
         scenario, diagnostics = read_one(source, text=text, strict=strict, limits=limits, behavior=behavior)
     except ScenarioError:
         if named is not None and scene is None:
-            suite_scene(named)  # a suite is refused with a sentence of its own
+            _suites().suite_scene(named)  # a suite is refused with a sentence of its own
         raise
-    chosen = read_perturbations(rules_of_suite(path, text)[0] if perturb is None else perturb)
-    return perturbed(scenario, chosen) if chosen else scenario, [Finding.of(item) for item in diagnostics]
+    given = rules_of_suite(path, text)[0] if perturb is None else perturb
+    scenario = perturbed(scenario, read_perturbations(given)) if given else scenario
+    return scenario, [Finding.of(item) for item in diagnostics]
 
 
 def rules_of_suite(path: Any, text: str | None = None) -> tuple[list[str], str]:
@@ -73,9 +72,14 @@ def rules_of_suite(path: Any, text: str | None = None) -> tuple[list[str], str]:
     """
     if text is not None or not isinstance(path, (str, os.PathLike)) or Path(path).is_file():
         return [], "done"
-    from irsim.benchmarks.suite_plan import suite_rules
+    return _suites().suite_rules(Path(path)) or ([], "done")
 
-    return suite_rules(Path(path)) or ([], "done")
+
+def _suites() -> Any:
+    """The module of suites, which few scenarios need."""
+    from irsim.benchmarks import suite_plan
+
+    return suite_plan
 
 
 def policy_of_suite(path: str | Path | None, policy: Any) -> Any:
@@ -90,9 +94,7 @@ def policy_of_suite(path: str | Path | None, policy: Any) -> Any:
     """
     if not isinstance(path, (str, os.PathLike)) or not isinstance(policy, str) or Path(path).is_file():
         return policy
-    from irsim.benchmarks.suite_plan import suite_policy
-
-    return suite_policy(path, policy)
+    return _suites().suite_policy(path, policy)
 
 
 def opened_policy(

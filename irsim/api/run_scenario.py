@@ -109,8 +109,8 @@ def run(
         TargetError: A file to export exists, and ``overwrite`` is not set.
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
-    import_modules(imports)
     rules = rules_of_suite(path, text)
+    import_modules(imports)
     perturbations = read_perturbations(rules[0] if perturb is None else perturb)
     until = cast("Until", rules[1]) if until is None else until
     driver, behavior = opened_policy(path, policy, behavior, limits)
