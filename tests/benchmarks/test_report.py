@@ -15,7 +15,7 @@ from irsim.benchmarks.comparison import benchmark
 from irsim.benchmarks.report.charts import charts
 from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.report.page import page
-from irsim.benchmarks.stored import RESULTS, run_plan
+from irsim.benchmarks.stored import RESULTS, measure_plan, run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.app import app
 from irsim.cli.benchmark import show_benchmark
@@ -239,3 +239,11 @@ def test_what_is_taken_for_granted_is_said_and_scenes_that_differ_are_named(tmp_
     assert mixed.startswith(
         "in a, c contacts count at the ends of steps of 0.1 s only, in b contacts within steps count, too; robots "
     )
+
+
+def test_a_report_ends_with_the_line_that_cites_it(tmp_path: Path) -> None:
+    suite = measure_plan(suite_plan("circle_swap_v1", policies=["dash"], seeds=2, scenarios=["diff-4"]), workers=1)
+    assert isinstance(suite, SuiteResult)
+    line = f"suite circle_swap_v1, version {suite.suite_version}, suite hash {suite.suite_hash}, run hash {suite.hash}"
+    for told in (markdown(suite), page(suite)):
+        assert f"irsim {suite.version} (MIT), {line}, 2 seeds from " in told.replace("\\", "")

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from mcp import Client, StdioServerParameters
 
 from irsim import __version__
@@ -60,6 +61,15 @@ def start_of(command: str, args: list[str]) -> tuple[list[str], list[str]]:
     """How the server is started, and what it is told."""
     cut = args.index("--workspace")
     return [command, *args[:cut]], args[cut:]
+
+
+def test_the_citation_is_of_this_version() -> None:
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert (cited["version"], cited["license"], cited["title"]) == (__version__, PROJECT["license"], "irsim")
+    assert cited["authors"] == PROJECT["authors"]
+    assert cited["keywords"] == PROJECT["keywords"]
+    block = README.partition("```bibtex\n")[2].partition("```")[0]
+    assert f"version = {{{__version__}}}" in block
 
 
 @each

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from irsim.benchmarks.report.rows import policy_labels
-from irsim.common.text import markdown_code, markdown_text
+from irsim.common.text import markdown_code, markdown_text, plural
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion, SuiteResult
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "Table",
     "about_of",
     "cells_of",
+    "citation_of",
     "columns_of",
     "differences_of",
     "facts_of",
@@ -69,6 +70,7 @@ def markdown(result: BenchmarkResult, notes: Sequence[str] = ()) -> str:
     lines += [f"- {markdown_text(label)}: {markdown_code(text)}" for text, label in labels.items()]
     lines += ["", *(f"Note: {markdown_text(note)}  " for note in (*result.notes, *notes))]
     lines += ["", INTERVALS, "", f"Reproduce: {markdown_code(result.reproduce)} with irsim {result.version}"]
+    lines += ["", f"Cite this run: {markdown_text(citation_of(result))}"]
     return "\n".join(lines) + "\n"
 
 
@@ -100,6 +102,15 @@ def facts_of(result: BenchmarkResult) -> list[str]:
     if result.incidents:
         lines.append(f"Besides outcomes: {'; '.join(result.incidents)}.")
     return lines
+
+
+def citation_of(result: BenchmarkResult) -> str:
+    """The words with which others cite a run: program, version, and hashes of what it depends on."""
+    parts = [f"irsim developers, irsim {result.version} (MIT)"]
+    if isinstance(result, SuiteResult):
+        parts += [f"suite {result.suite}, version {result.suite_version}", f"suite hash {result.suite_hash}"]
+        parts.append(f"run hash {result.hash}")
+    return ", ".join([*parts, f"{plural(len(result.seeds), 'seed')} from {result.seeds[0]}"]) + "."
 
 
 def about_of(result: BenchmarkResult) -> list[str]:

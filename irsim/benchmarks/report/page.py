@@ -13,6 +13,7 @@ from irsim.benchmarks.report.markdown import (
     Table,
     about_of,
     cells_of,
+    citation_of,
     columns_of,
     differences_of,
     facts_of,
@@ -64,6 +65,7 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
         "<h2>Charts</h2>" if figures else "", f'<div class="charts">{"".join(figures)}</div>',
         f"<h2>Episodes that failed</h2><p>{len(worst)} of {failed:,} are shown.</p>" if worst else "", *worst,
         "<h2>Run it again</h2>", f"<pre>{_shown(result.reproduce)}</pre><p>irsim {_shown(result.version)}</p>",
+        f"<h2>Cite this run</h2><p>{_shown(citation_of(result))}</p>",
     ]  # fmt: skip
     return _SHELL.format(title=title, body="\n".join(filter(None, parts)))
 
