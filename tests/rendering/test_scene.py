@@ -56,6 +56,12 @@ def test_a_car_is_a_picture_unless_its_description_is_empty(make: Make) -> None:
     assert [len(list(each.of(0, "body"))) for each in shown] == [1, 0]
 
 
+@pytest.mark.parametrize(("name", "label"), [("Tischläufer", "Tischläufer"), ("小车", "r0"), ("cart 小车", "r0")])
+def test_names_in_letters_that_pictures_lack_are_numbers_there(make: Make, name: str, label: str) -> None:
+    env = make(ROBOT % ("diff", f"name: {name}"))
+    assert env.robot.drawing.label == label
+
+
 def test_the_arrow_of_an_omni_drive_points_where_it_goes(make: Make) -> None:
     env = make(ROBOT.replace("goal: [8, 3, 0]", "goal: [2, 8]") % ("omni", "plot: {show_arrow: true}"))
     env.step()

@@ -12,6 +12,8 @@ from irsim.objects.setters import changed_options
 
 __all__ = ["PLOT_KEYS", "Drawing"]
 
+_NO_GLYPHS = "\u2e80"
+"""First of the letters, such as Chinese ones, that the fonts of pictures lack."""
 MAX_LABEL = 24
 """Number of characters of a name that pictures show."""
 PLOT_KEYS = ("show_goal", "show_goal_text", "show_sensor", "show_trail", "trail_freq")
@@ -48,9 +50,10 @@ class Drawing:
 
     @property
     def label(self) -> str:
-        """Name of the object in pictures: the name that the user gave, without one ``short_label``."""
+        """Name in pictures: the one that the user gave, if fonts have its letters; else ``short_label``."""
         view: SimObject = self.__dict__["_view"]
-        return self.short_label if view.name == f"{view.role}_{view.id}" else clean(view.name, MAX_LABEL)
+        unnamed = view.name == f"{view.role}_{view.id}" or max(view.name, default="") >= _NO_GLYPHS
+        return self.short_label if unnamed else clean(view.name, MAX_LABEL)
 
     @property
     def show_goal(self) -> bool:

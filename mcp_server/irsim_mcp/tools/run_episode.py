@@ -157,18 +157,16 @@ def _of_seeds(data: WorkerResult, services: Services, given: str, form: str) -> 
     episode = shown.concise(detailed=detailed, artifacts=artifacts, advice=advice)
     episode.summary = clean(f"{whole.summary}. Seed {shown.seed}: {episode.summary}", 600)
     episode.episodes = [_brief(one) for one in whole.episodes]
-    lines = [f"{whole.summary}.", *(_lines(episode.episodes) if len(episode.episodes) > 1 else ()), _found(whole)]
+    several = [*_lines(episode.episodes), *_nearest(whole)] if len(episode.episodes) > 1 else []
+    lines = [f"{whole.summary}.", *several, _found(whole)]
     lines += [f"{'Changes: ' if not k else '- '}{line}" for k, line in enumerate(changes)]
     lines += table
     picture = f" (the picture shows step {shown.decisive_step or shown.steps})" if png else ""
-    if whole.failed or whole.same:
+    if whole.failed or whole.same or picture:
         said = _whole_text(shown, episode).rpartition("\nRecord: ")
-        lines += [f"{'The first that failed, ' * (not whole.same)}seed {shown.seed}{picture}:", said[0]]
-        lines += [*_others(shown), *_meetings(data["closest"], shown), *_crossed(data["zones"])]
+        lines += [f"{'The first that failed, ' * bool(whole.failed and not whole.same)}seed {shown.seed}{picture}:"]
+        lines += [said[0], *_others(shown), *_meetings(data["closest"], shown), *_crossed(data["zones"])]
         lines.append("".join(said[1:]).lstrip())
-    elif picture:
-        lines += [*(f"Warning: {warning}" for warning in episode.warnings)]
-        lines += [f"Seed {shown.seed}{picture}: {clean(shown.summary, 300)}", f"Next: {advice}"]
     else:
         lines += [*(f"Warning: {warning}" for warning in episode.warnings), f"Next: {advice}"]
     content: list[TextContent | ImageContent] = [TextContent(type="text", text="\n".join(lines))]
@@ -232,6 +230,16 @@ def _lines(episodes: list[dict[str, Any]]) -> list[str]:
     times = [one["sim_time"] for one in episodes if one["outcome"] == "success"]
     span = f", after {min(times):g} to {max(times):g} s" if len(set(times)) > 1 else ""
     return [*lines, f"- success: seed {listed(good, MAX_CONCISE)}{span}"] if good else lines
+
+
+def _nearest(whole: RunsResult) -> list[str]:
+    """A line about how near robots came to anything in several episodes, and in which one nearest."""
+    near = [(one.min_clearance, run.seed, one) for run in whole.episodes for one in run.robots]
+    known = [(gap, seed, one) for gap, seed, one in near if gap is not None]
+    if not known:
+        return []
+    gap, seed, one = min(known, key=lambda item: item[0])
+    return [f"- nearest of all: {clean(one.name)!r} {gap:.3g} m from {clean(one.nearest or '')!r} with seed {seed}"]
 
 
 def _ending(brief: dict[str, Any]) -> str:
