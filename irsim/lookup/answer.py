@@ -103,7 +103,7 @@ class TopicError(CodedError, LookupError):
 
 _MAX_BRIEF_KEYS = 8
 """Number of keys that a brief answer describes; further ones are only named."""
-_MAX_BRIEF_LIST = 3500
+_MAX_BRIEF_LIST = 2000
 """Number of characters up to which a brief answer repeats a list of topics; of longer ones it has only the names."""
 _MIN_BRIEF_TEXT = 200
 """Number of characters from which on the next sentence ends the text of a brief answer."""

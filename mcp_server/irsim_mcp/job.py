@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
+_SIZE_PX = 500
+"""Longer side of the picture that comes with several episodes."""
 _MAX_NEAR = 10
 """Number of objects that can move, up to which several episodes tell of how near they came to one another."""
 _PROGRESS_PERIOD_S = 0.5
@@ -128,7 +130,7 @@ def _run_seeds(job: dict[str, Any], progress: _Progress) -> str:
         report = validate(**given, **base, strict=True, simulate=True, seed=shown.seed, limits=_limits(job))
         answer["changes"] = None if report.changes is None else report.changes.model_dump(mode="json")
     if shown.run_id is not None:
-        drawn = {"size": 600, "overlays": None, "region": None, "draw": True, "strip": None}
+        drawn = {"size": _SIZE_PX, "overlays": None, "region": None, "draw": True, "strip": None}
         job["arguments"] = {"run_id": shown.run_id, "steps": shown.decisive_step or shown.steps, **drawn}
         answer |= json.loads(_run_snapshot(job, _Progress(lambda line: None)))
         scenario, _ = read_scenario(**given, strict=True, limits=_limits(job))

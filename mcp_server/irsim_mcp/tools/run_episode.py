@@ -38,6 +38,8 @@ _SHARE = 0.7
 """Share of the time of a call in which episodes begin; the rest is for the picture."""
 _MAX_LINES = 5
 """Number of failed episodes that the text says a line about."""
+_TOLD = ("arrival", "waypoint", "zone_entry", "zone_exit", "line_crossing")
+"""Kinds of events that other lines about a success tell."""
 _UNDRIVEN = "has no behavior"
 """Part of the reason of a run with a robot that nothing drives."""
 _ARTIFACTS = ("events.json", "trace.csv")
@@ -247,11 +249,16 @@ def _ending(brief: dict[str, Any]) -> str:
 
 
 def _whole_text(shown: RunResult, episode: ConciseRun) -> str:
-    """An episode in full, but no reason that its summary has, and only the events of robots if there are any."""
+    """An episode in full, but no reason that its summary has, and only the events of robots if there are any.
+
+    Of a success it has no event that other lines tell: arrivals, waypoints, and who was in which zone.
+    """
     robots = {clean(robot.name) for robot in shown.robots}
-    about = [event for event in episode.events if robots & {event.object, event.partner}]
+    about = [event for event in episode.events if robots & {event.object, event.partner}] or episode.events
+    if shown.outcome == "success":
+        about = [event for event in about if event.kind.partition(" ")[0] not in _TOLD]
     reason = None if episode.reason and episode.reason in shown.summary else episode.reason
-    changes = {"summary": clean(shown.summary, 400), "reason": reason, "events": about or episode.events}
+    changes = {"summary": clean(shown.summary, 400), "reason": reason, "events": about}
     return episode.model_copy(update=changes).text()
 
 
