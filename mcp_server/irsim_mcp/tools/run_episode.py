@@ -168,7 +168,8 @@ def _of_seeds(data: WorkerResult, services: Services, given: str, form: str) -> 
         said = _whole_text(shown, episode).rpartition("\nRecord: ")
         lines += [f"{'The first that failed, ' * bool(whole.failed and not whole.same)}seed {shown.seed}{picture}:"]
         lines += [said[0], *_others(shown), *_meetings(data["closest"], shown), *_crossed(data["zones"])]
-        lines.append("".join(said[1:]).lstrip())
+        tail = "".join(said[1:]).lstrip()
+        lines.append(tail if artifacts is None else tail.partition("\n")[2])
     else:
         lines += [*(f"Warning: {warning}" for warning in episode.warnings), f"Next: {advice}"]
     content: list[TextContent | ImageContent] = [TextContent(type="text", text="\n".join(lines))]
