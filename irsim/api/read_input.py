@@ -37,7 +37,7 @@ def read_scenario(
         strict: Refuse what IR-SIM would ignore.
         limits: Limits of the loader.
         behavior: Replaces every robot's own behavior.
-        perturb: Perturbations; None: those of the suite, if ``path`` is of one.
+        perturb: Perturbations; default: the suite's, if ``path`` is of one.
 
     Returns:
         The scenario, ready to build, and the warnings and hints about it.

@@ -75,7 +75,7 @@ def run(
             timeHorizon: 5}``), a file (``model.npz``), a function of observations, or a policy.
         behavior: Another name of ``policy``.
         perturb: Starts, speeds and delays that differ from the scenario, as the seed draws them: see
-            :func:`irsim.benchmark`. Default: those of the suite, if ``path`` is of one; an empty list is none.
+            :func:`irsim.benchmark`. Default: the suite's, if ``path`` is of one; an empty list perturbs nothing.
         until: ``done`` ends the run when every robot has arrived or stopped; ``time_limit`` lets it go on to its
             horizon: a robot with ``loop`` patrols on after its first lap; ``first_collision`` also ends it when a
             robot collides, unless it is shown or saved. Default: as the suite of ``path`` says, else ``done``.

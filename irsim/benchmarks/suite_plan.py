@@ -183,7 +183,7 @@ def suite_rules(name: str | Path) -> tuple[list[str], Until] | None:
     """The rules of a suite for each episode of a scenario of it: perturbations as text, and when an episode ends.
 
     Args:
-        name: ``SUITE/SCENARIO``, or another scenario, of which there are none.
+        name: ``SUITE/SCENARIO``, or another scenario, for which the result is None.
 
     Raises:
         SuiteError: The suite is not valid.

@@ -130,7 +130,7 @@ def as_brief_text(answer: Answer) -> str:
     """Return the essence of an answer: first sentences, its own keys, and the example.
 
     Keys that a component has in common with its siblings, and those beyond the first ones, are only named. A list of
-    topics is whole, or has only names. Of the first topic that a search finds there is the text, of others the name.
+    topics is whole, or has only names. Of the first topic that a search finds there is the text; the rest are named.
     """
     lines = [answer.title]
     if answer.text:
@@ -142,10 +142,10 @@ def as_brief_text(answer: Answer) -> str:
         listed = sum(len(_line(key)) for keys in answer.groups.values() for key in keys)
         most = len(max(answer.groups.values(), key=len)) if listed <= _MAX_BRIEF_LIST else 0
     for heading, keys in answer.groups.items():
-        found = answer.best is not None
-        shown = [] if found or "in common" in heading or heading == "keys of all" else keys[:most]
+        searched = answer.best is not None
+        shown = [] if searched or "in common" in heading or heading == "keys of all" else keys[:most]
         lines += [_brief_line(key) for key in shown]
-        if found:
+        if searched:
             lines[0] += f": {', '.join(key.name for key in keys)}"
         elif rest := [_with_default(key) for key in keys[len(shown) :]]:
             lines.append(f"- {'also' if shown else heading}: {', '.join(rest)}")

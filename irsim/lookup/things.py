@@ -228,12 +228,12 @@ THINGS: dict[str, Guide] = {
     ),
     "encounter": Guide(
         "who gives way to whom",
-        "Everybody shares: orca for all, sidestep 10 (right; -10 left) for who meets head-on. People make way, the "
-        "robot does not: robot dash, people orca with timeHorizon 4 and sidestep 10, started a little off its line. "
-        "The robot makes way for people who do not care: robot orca, people dash. Nobody: dash for all. A first, then "
-        "B: B has start_time = A's way / speed + 1 s and starts beside A's way; a robot that must see by itself when "
-        "the way is free needs a program. Overtake: template overtaking. Surround, gather: dash to goals on a ring, "
-        "start_time so that the last ones close it. Walk beside or behind somebody: the same speed and way, moved by "
+        "Sharing: orca for all, sidestep 10 (right; -10 left) for who meets head-on. People make way, the robot does "
+        "not: robot dash, people orca with timeHorizon 4 and sidestep 10, started a little off its line. The robot "
+        "makes way for people who do not care: robot orca, people dash. No avoidance: dash for all. A first, then B: "
+        "B has start_time = A's way / speed + 1 s and starts beside A's way; a robot that must see by itself when the "
+        "way is free needs a program. Overtake: template overtaking. Surround, gather: dash to goals on a ring, "
+        "start_time so that the last ones close it. Walk beside or behind a person: the same speed and way, moved by "
         "the offset.",
         "obstacle: {name: walker, kinematics: {name: omni}, shape: {name: circle, radius: 0.25}, state: [9, 2.2],\n"
         "           goal: [1, 2], behavior: {name: orca, timeHorizon: 4, sidestep: 10}}",

@@ -76,7 +76,7 @@ def scene_table(scenario: ResolvedScenario, seed: int | None = None, driven: str
 
 
 def _alike(records: Sequence[ObjectRecord]) -> list[list[int]]:
-    """Objects of each row of the table: those of an entry, or of each kind in it if there are a few kinds."""
+    """Objects of each row of the table: an entry's, or each kind's in it if there are a few kinds."""
     numbers = (k for k, record in enumerate(records) if not record.is_terrain)
     rows: list[list[int]] = []
     for _, entry in itertools.groupby(numbers, key=lambda k: records[k].path):

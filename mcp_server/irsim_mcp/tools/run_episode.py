@@ -40,6 +40,8 @@ _MAX_LINES = 5
 """Number of failed episodes that the text says a line about."""
 _TOLD = ("arrival", "waypoint", "zone_entry", "zone_exit", "line_crossing")
 """Kinds of events that other lines about a success tell."""
+_MAX_MET = 3
+"""Number of closest approaches that the text tells."""
 _UNDRIVEN = "has no behavior"
 """Part of the reason of a run with a robot that nothing drives."""
 _ARTIFACTS = ("events.json", "trace.csv")
@@ -213,7 +215,7 @@ def _meetings(closest: list[list[Any]], shown: RunResult) -> list[str]:
         pair = frozenset((name, other))
         if kind != "static" and not said & {(name, other), (other, name)}:
             met.setdefault(pair, f"{clean(name)!r} and {clean(other)!r} {distance:g} m at {time:g} s")
-    return [f"Closest to one another: {'; '.join([*met.values()][:_MAX_LINES])}"] if met else []
+    return [f"Closest to one another: {'; '.join([*met.values()][:_MAX_MET])}"] if met else []
 
 
 def _brief(one: RunResult) -> dict[str, Any]:
@@ -226,7 +228,10 @@ def _brief(one: RunResult) -> dict[str, Any]:
 def _lines(episodes: list[dict[str, Any]]) -> list[str]:
     """A line for each episode that failed, up to a number, and one for all others."""
     failed = [one for one in episodes if one["outcome"] != "success"]
-    lines = [f"- seed {one['seed']}{_ending(one)}: {one.get('reason', 'no reason')}" for one in failed[:_MAX_LINES]]
+    why: dict[str, list[str]] = {}
+    for one in failed[:_MAX_LINES]:
+        why.setdefault(one.get("reason", "no reason"), []).append(f"{one['seed']}{_ending(one)}")
+    lines = [f"- seed {', '.join(seeds)}: {reason}" for reason, seeds in why.items()]
     if more := [str(one["seed"]) for one in failed[_MAX_LINES:]]:
         lines.append(f"- also failed: {', '.join(more)}")
     good = [f"{one['seed']}{_ending(one)}" for one in episodes if one["outcome"] == "success"]
