@@ -241,6 +241,8 @@ def test_maps_that_are_not_there(tmp_path) -> None:
     assert "cave.png" in str(missing.allowed)
     [missing] = read(scenario(tmp_path, "{name: image, path: cav.png}")).diagnostics
     assert (missing.fix, missing.path) == ("path: cave.png", ("world", "obstacle_map", "path"))
+    [missing] = read(scenario(tmp_path, "{name: image, path: maze.pgm}")).diagnostics
+    assert missing.fix == "give the path of the file relative to the scenario", "not of the bundled maze.png"
 
 
 def test_maps_stay_inside_the_workspace(tmp_path) -> None:

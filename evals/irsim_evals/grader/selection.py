@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict
 
+from irsim.options.registry import KINEMATICS
 from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.matching import Match, Quantity, matches
 from irsim_evals.grader.properties import PROPERTIES, PropertyName, value_of
@@ -17,16 +18,14 @@ __all__ = ["BUILT_IN", "Selection", "Selections", "Selector", "select"]
 
 
 _BUILT_IN: dict[str, dict[str, Any]] = {
-    "all": {},
-    "robots": {"role": "robot"},
-    "obstacles": {"role": "obstacle"},
-    "movers": {"static": False},
-    "statics": {"static": True},
-    "solids": {"static": True, "passable": False},
-}
+    "all": {}, "robots": {"role": "robot"}, "obstacles": {"role": "obstacle"}, "movers": {"static": False},
+    "statics": {"static": True}, "solids": {"static": True, "passable": False},
+}  # fmt: skip
 Selection = Annotated[str, OneOf("selection", tuple(_BUILT_IN), own="selections")]
 """Name of a selection: a built-in one, or one that the case has under ``select``."""
-Names = Annotated[list[str], Listed()]
+_SHAPES = ("circle", "square", "rectangle", "line", "polygon", "compound")
+Drives = Annotated[list[Annotated[str, OneOf("drive", tuple(KINEMATICS.installed()))]], Listed()]
+Shapes = Annotated[list[Annotated[str, OneOf("shape", _SHAPES)]], Listed()]
 Selections = Annotated[list[Selection], Listed()]
 
 
@@ -41,9 +40,9 @@ class Selector(BaseModel):
     """Whether it never moves."""
     passable: bool | None = None
     """Whether others pass through it."""
-    kinematics: Names | None = None
+    kinematics: Drives | None = None
     """Name of its drive, or several."""
-    shape: Names | None = None
+    shape: Shapes | None = None
     """``circle``, ``square``, ``rectangle``, ``line``, ``polygon``, ``compound``; a square is a rectangle, too."""
     named: Regex | None = None
     """Regular expression that its name, the name of its group or one of its tags contains, ignoring case."""

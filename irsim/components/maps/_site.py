@@ -232,9 +232,13 @@ class MapSite:
         return path
 
     def _near(self, name: str, folders: Sequence[Path]) -> str | None:
-        """The name of a file or bundled map that is similar to ``name``; None if none is."""
-        choices = [own for own in self.bundled_names() if nearest(name, [own], _SLIP) is not None]
+        """The name of a file or bundled map of the same kind that is similar to ``name``; None if none is.
+
+        A picture of the user that is missing is never replaced by a bundled one of another kind.
+        """
         suffix = Path(name).suffix.lower()
+        bundled = [own for own in self.bundled_names() if Path(own).suffix == suffix]
+        choices = [own for own in bundled if nearest(name, [own], _SLIP) is not None]
         for folder in folders:
             try:
                 inside = sorted((folder / name).parent.iterdir())[:2000]

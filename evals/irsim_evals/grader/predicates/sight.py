@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
+from irsim.options.registry import SENSORS
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches
 from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, measured, register
+from irsim_evals.grader.words import OneOf
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
@@ -28,7 +30,7 @@ class Sees(OfBodies, EpisodePredicate):
 
     what: str | None = None
     """Name of the selection of what may be seen; default: everything, the map and the walls of the world included."""
-    by: str | None = None
+    by: Annotated[str, OneOf("sensor", (*SENSORS.installed(), "fov"))] | None = None
     """Kind of the sensor, such as ``lidar2d``, or ``fov`` for the field of view; default: any."""
     since: Quantity = 0.0
     """Begin of the time in which it counts [s]; a negative time counts back from the end of the episode."""
