@@ -138,3 +138,13 @@ def test_a_map_that_nobody_has_is_still_an_error() -> None:
 def test_a_missing_map_is_a_picture_below_the_folder(name: str) -> None:
     with pytest.raises(ValueError, match="missing"):
         made_up({"id": "size", "world": {"width": 12}}, missing=[name])
+
+
+def test_many_pictures_in_a_folder_do_not_hide_the_scenario(tmp_path: Path) -> None:
+    (tmp_path / "frames").mkdir()
+    for number in range(230):
+        (tmp_path / "frames" / f"{number:03}.png").write_bytes(b"\x89PNG")
+    (tmp_path / "scenario.yaml").write_text("world: {width: 3, height: 3}\n", encoding="utf-8")
+    (tmp_path / "reply.md").write_text("Done.", encoding="utf-8")
+    answer = from_folder(tmp_path)
+    assert (list(answer.files), answer.reply) == (["scenario.yaml"], "Done.")

@@ -111,7 +111,7 @@ def from_folder(folder: Path, turns: int = 1) -> Answer:
     paths = list(itertools.islice(folder.rglob("*"), _MAX_THINGS + 1))
     if len(paths) > _MAX_THINGS:
         raise ArtefactError(f"there are more than {_MAX_THINGS:,} files and folders")
-    for path in sorted(paths, key=lambda path: (_is_hidden(path.relative_to(folder)), path)):
+    for path in sorted(paths, key=lambda path: (_is_hidden(path.relative_to(folder)), len(path.parts), path)):
         relative = path.relative_to(folder)
         name = relative.as_posix()
         why = _unopened(path)
