@@ -267,8 +267,7 @@ def _guarded(look: Callable[..., Observation]) -> Observation:
     try:
         return look()
     except Exception as error:  # the grader is total: what cannot be observed does not hold
-        known = isinstance(error, IrsimError)
-        seen = str(error).splitlines()[0] if known else f"{type(error).__name__}: {error}"[:300]
+        seen = str(error).splitlines()[0] if isinstance(error, IrsimError) else f"{type(error).__name__}: {error}"[:300]
         return Observation(False, "something that can be observed", seen)
 
 
@@ -276,8 +275,7 @@ def _outcome(item: Any, observation: Observation, passed: bool) -> Outcome:
     expected = f"{item.file}: {observation.expected}" if item.file else observation.expected
     return Outcome(
         assertion=item.id, stage=item.predicate.stage, passed=passed, expected=expected, observed=observation.observed,
-        yaml_path=observation.yaml_path, seed=observation.seed,
-        marks=[] if passed else observation.marks,
+        yaml_path=observation.yaml_path, seed=observation.seed, marks=[] if passed else observation.marks,
     )  # fmt: skip
 
 

@@ -283,7 +283,7 @@ def _advice_on_seeds(whole: RunsResult, given: str, seen: bool) -> str:
     if not shown.robots:
         return _advice(shown, given)
     doubtful = shown.jammed or any(robot.contacts_between_steps for robot in shown.robots)
-    if (doubtful and not whole.failed) or not (seen or not whole.failed):
+    if not seen if whole.failed else doubtful:
         return _advice(shown, given)
     if whole.not_run:
         return f"{plural(len(whole.not_run), 'seed')} had no time: {more}."

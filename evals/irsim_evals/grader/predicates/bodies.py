@@ -55,17 +55,19 @@ class Count(OfBodies, ScenePredicate):
     """Accepted numbers for each 10 m² of the world."""
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
-        """Count them, and add up their areas."""
-        bodies, (x0, y0, x1, y1) = material.bodies(scene, self.of), scene.bounds
-        area = (x1 - x0) * (y1 - y0)
+        """Count them, and add up their areas if that is asked for."""
+        bodies = material.bodies(scene, self.of)
+        passed = matches(self.number, len(bodies), "count")
+        expected, observed = f"{self.of}: {self.number.words()}", f"{self.of}: {len(bodies)}"
+        if self.cover is None and self.per_10_m2 is None:
+            return Observation(passed, expected, observed)
+        area = shapely.box(*scene.bounds).area
         covered = shapely.union_all([body.footprint for body in bodies]).area / area
         asked = [(self.cover, covered, "of the area"), (self.per_10_m2, 10 * len(bodies) / area, "for each 10 m²")]
         crowded = [(match, value, what) for match, value, what in asked if match is not None]
-        passed = matches(self.number, len(bodies), "count")
-        passed = passed and (not crowded or any(matches(match, value, "share") for match, value, _ in crowded))
-        expected, observed = f"{self.of}: {self.number.words()}", f"{self.of}: {len(bodies)}"
-        expected += "".join(f" or {match.words()} {what}" for match, _, what in crowded).replace(" or", ",", 1)
-        return Observation(passed, expected, observed + "".join(f", {show(v)} {what}" for _, v, what in crowded))
+        expected += ", " + " or ".join(f"{match.words()} {what}" for match, _, what in crowded)
+        observed += "".join(f", {show(value)} {what}" for _, value, what in crowded)
+        return Observation(passed and any(matches(m, v, "share") for m, v, _ in crowded), expected, observed)
 
 
 @register("each")
