@@ -86,6 +86,7 @@ def benchmark(
     log: str | Path | None = None,
     resume: bool = False,
     until: Until = "done",
+    groups: Mapping[str, Sequence[str]] | None = None,
     timing: dict[str, Any] | None = None,
 ) -> BenchmarkResult:
     """Run every scenario under every policy with every seed, and compare.
@@ -122,6 +123,7 @@ def benchmark(
         resume: Go on with the log of an interrupted benchmark: its episodes are not run again.
         until: ``done`` ends an episode when every robot has arrived or stopped, ``first_collision`` also when one
             collides.
+        groups: Name of a group → its scenarios, which are summarised together as ``(all NAME)``.
         timing: Receives the wall-clock times of decisions, see :func:`irsim.benchmarks.timing.timing_report`.
 
     Raises:
@@ -211,6 +213,7 @@ def benchmark(
         assumptions=assumptions_of(settled),
         random=chances,
         rows=[],
+        groups={name: list(members) for name, members in (groups or {}).items()},
         episodes=[],
         notes=[],
         warnings=warnings,

@@ -268,6 +268,11 @@ def measure(
     measured.episode["explored"] = _explored(task, episode, simulation, steps)
     measured.episode["pedestrian_delay"] = _pedestrian_delay(task, episode, scene, simulation)
     robots = measured.robots
+    if robots:
+        times = [robot["time_to_goal"] for robot in robots]
+        limit = horizon * trace.step_time
+        known = [limit if math.isnan(time) else time for time in times]
+        measured.episode["restricted_time"] = math.fsum(known) / len(known)
     outcome: Outcome = "timeout"
     if hits:  # also a collision of robots that had arrived before
         outcome = "collision"

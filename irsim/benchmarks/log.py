@@ -12,7 +12,9 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from irsim.benchmarks.summary import incident_messages, notes_of, perturbation_notes, protocols_of, rows_of
+from irsim.benchmarks.incidents import incident_messages
+from irsim.benchmarks.pairs import pairs_of, ranks_of
+from irsim.benchmarks.summary import notes_of, perturbation_notes, protocols_of, rows_of, summaries_of
 from irsim.common.files import write_atomically
 from irsim.common.hashing import digest
 from irsim.common.records import ContentError, read_json
@@ -168,12 +170,22 @@ def _line(head: str, number: int, episode: EpisodeRow) -> str:
 
 def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> BenchmarkResult:
     """A copy of a result with its episodes and with the rows and notes that follow from them."""
-    rows = rows_of(episodes, head.scenarios, head.behaviors, head.random, protocols_of(head.scenarios))
+    protocols = protocols_of(head.scenarios)
+    summaries = summaries_of(episodes, head.scenarios, head.behaviors, protocols, head.groups)
     notes = perturbation_notes(head.perturbed) + notes_of(episodes, head.random, head.seeds)
     notes += [f"{name}: {note}" for name, note in head.unequal.items()]
     unopened = {
         name: finding.message for name in head.warnings for finding in head.warnings[name] if finding.code == UNOPENED
     }
     notes += [f"{name}: {message}" for name, message in unopened.items()]
-    changes = {"episodes": list(episodes), "rows": rows, "notes": notes, "incidents": incident_messages(episodes)}
+    rows = rows_of(summaries, head.behaviors, head.random)
+    pairs = pairs_of(summaries, head.behaviors, head.random)
+    changes = {
+        "episodes": list(episodes),
+        "rows": rows,
+        "pairs": pairs,
+        "ranks": ranks_of(rows, pairs),
+        "notes": notes,
+        "incidents": incident_messages(episodes),
+    }
     return head.model_copy(update=changes)

@@ -103,6 +103,15 @@ class Plan(BaseModel):
         return open_planned(self.policies, self.sources, self.digests)
 
     @property
+    def groups(self) -> dict[str, list[str]]:
+        """Scenarios of each tag of the suite."""
+        tags: dict[str, list[str]] = {}
+        for family in () if self.suite is None else self.suite.scenarios:
+            for tag in family.tags:
+                tags.setdefault(tag, []).extend(one.name for one in self.scenarios if one.family == family.name)
+        return tags
+
+    @property
     def hash(self) -> str:
         """Hash of everything that decides the numbers; folders and the command do not."""
         where = {

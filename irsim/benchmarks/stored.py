@@ -148,6 +148,7 @@ def measure_plan(plan: Plan, **options: Any) -> BenchmarkResult:
         strict=plan.strict,
         imports=plan.imports,
         until=plan.until,
+        groups=plan.groups,
         **options,
     )
     return result_of_plan(plan, result)

@@ -12,6 +12,7 @@
       - name: lidars                   # values that change together: a list of mappings
         template: crossing
         vary: [{beams: 91, range: 4}, {beams: 181, range: 8}]
+        tags: [sensing]                 # a row of its own for all scenarios with this tag
     seeds: {first: 0, count: 100, full: 1000}
     steps: 500
     protocols: [freeze, yield]
@@ -24,11 +25,11 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_serializer, model_validator
 
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
@@ -84,6 +85,15 @@ class SuiteScenario(_Part):
     mapping is a scenario, so that values change together."""
     steps: Annotated[int, Field(ge=1, le=MAX_STEPS)] | None = None
     """Horizon of these scenarios in steps; null takes the suite's."""
+    tags: list[Name] = []
+    """Groups to which these scenarios belong, such as ``doorway``: the scenarios of each tag are summarised in a row
+    of their own."""
+
+    @model_serializer(mode="wrap")
+    def _without_empty_tags(self, serialize: Callable[[SuiteScenario], dict[str, Any]]) -> dict[str, Any]:
+        """The fields; without tags as before there were any, so that hashes of suites stay."""
+        fields = serialize(self)
+        return {key: value for key, value in fields.items() if key != "tags" or value}
 
     def variants(self) -> Iterator[dict[str, Any]]:
         """The values of each scenario of the family, by key, in order."""

@@ -7,23 +7,23 @@ from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, get_args
 
+from irsim.benchmarks.incidents import incident_counts, incident_seeds, placed
 from irsim.benchmarks.suite import Protocol
-from irsim.common.text import listed, plural
+from irsim.common.text import listed
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
-from irsim.metrics.statistics import bootstraps, newcombe, spread, wilson
-from irsim.results.benchmark import CROWDED, LOST, BenchmarkRow, EpisodeRow, Estimate, Proportion
+from irsim.metrics.statistics import bootstraps, nested_bootstraps, newcombe, spread, wilson
+from irsim.results.benchmark import BenchmarkRow, EpisodeRow, Estimate, Proportion
 
 __all__ = [
     "ALL",
     "KEYS",
-    "incident_messages",
-    "incident_seeds",
     "is_summary",
     "notes_of",
-    "placed",
+    "paired_differences",
     "proportion",
     "protocols_of",
     "rows_of",
+    "summaries_of",
 ]
 
 ALL = "(all)"
@@ -54,27 +54,52 @@ def proportion(count: int, n: int, *, certain: bool = False) -> Proportion:
     return Proportion(count=count, n=n, rate=count / n, low=low, high=high)
 
 
-def estimates(columns: Mapping[str, Sequence[float | None]], shares: Collection[str] = ()) -> dict[str, Estimate]:
+def estimates(
+    columns: Mapping[str, Sequence[float | None]],
+    shares: Collection[str] = (),
+    scenarios: Sequence[str] | None = None,
+) -> dict[str, Estimate]:
     """Mean, standard deviation and interval of the values of each column that are not None.
 
     Args:
         columns: Name → values.
         shares: Names of columns whose values are all 0 or 1: they get the interval of a proportion.
+        scenarios: Scenario of each value, those of one together, for a summary of several scenarios: they are resampled
+            with their values, and no share has a narrower interval than if its values were independent.
     """
     known = {name: [value for value in values if value is not None] for name, values in columns.items()}
-    others = [name for name in known if name not in shares]
-    intervals = dict(zip(others, bootstraps([known[name] for name in others]), strict=True))
+    if scenarios is None:
+        others = [name for name in known if name not in shares]
+        drawn = dict(zip(others, bootstraps([known[name] for name in others]), strict=True))
+    else:
+        table = [[math.nan if value is None else value for value in values] for values in columns.values()]
+        drawn = dict(zip(columns, nested_bootstraps(table, _numbers(scenarios)), strict=True))
     result = {}
     for name, values in known.items():
         n, mean, std = spread(values)
-        low, high = intervals[name] if name in intervals else wilson(sum(value > 0 for value in values), n)
-        result[name] = Estimate(n=n, mean=_known(mean), std=_known(std), low=_known(low), high=_known(high))
+        intervals = [drawn[name]] if name in drawn else []
+        if name in shares:
+            intervals.append(wilson(sum(value > 0 for value in values), n))
+        low, high = _widest(intervals)
+        result[name] = Estimate(n=n, mean=_known(mean), std=_known(std), low=low, high=high)
     return result
 
 
+def _numbers(scenarios: Sequence[str]) -> list[int]:
+    """Number of the scenario of each value, from 0 on."""
+    order = {name: number for number, name in enumerate(dict.fromkeys(scenarios))}
+    return [order[name] for name in scenarios]
+
+
+def _widest(intervals: Sequence[tuple[float, float]]) -> tuple[float | None, float | None]:
+    """The smallest interval that holds all of these, of which those that are NaN are left out."""
+    known = [ends for ends in intervals if not math.isnan(ends[0])]
+    return (min(low for low, _ in known), max(high for _, high in known)) if known else (None, None)
+
+
 def is_summary(name: str) -> bool:
-    """Whether a row with this name is one over all scenarios, or over all of one protocol."""
-    return name.partition("/")[0] == ALL
+    """Whether a row with this name is one over all scenarios, or over all of one group or protocol."""
+    return name.partition("/")[0] == ALL or name.startswith(f"{ALL[:-1]} ")
 
 
 def protocols_of(scenarios: Sequence[str]) -> dict[str, str]:
@@ -89,36 +114,55 @@ def protocols_of(scenarios: Sequence[str]) -> dict[str, str]:
     return {name: part if part in get_args(Protocol) else "as-written" for name, part in last.items()}
 
 
-def rows_of(
+def summaries_of(
     episodes: Sequence[EpisodeRow],
     scenarios: Sequence[str],
     behaviors: Sequence[str],
-    random: Mapping[str, Sequence[str]],
     protocols: Mapping[str, str] | None = None,
-) -> list[BenchmarkRow]:
-    """Rows by scenario and behavior, then over all scenarios if each has the same number of episodes.
+    groups: Mapping[str, Sequence[str]] | None = None,
+) -> dict[str, list[EpisodeRow]]:
+    """Name of each row → its episodes: of each scenario, of all scenarios, and of each group of scenarios.
 
-    Scenarios of different protocols are never summarised together, because the same start and seed would count twice.
+    Scenarios are summarised together if each has the same number of episodes. Those of different protocols never are,
+    because the same start and seed would count twice.
 
     Args:
         episodes: The episodes that are done.
         scenarios: The scenarios, in order.
         behaviors: The behaviors, in order.
-        random: The random parts of each scenario.
         protocols: The protocol of each scenario; None: all have the same.
+        groups: Name of a group → its scenarios.
     """
-    groups = {name: [episode for episode in episodes if episode.scenario == name] for name in scenarios}
+    made = {name: [episode for episode in episodes if episode.scenario == name] for name in scenarios}
     together = dict[str, list[str]]()
     for name in scenarios:
         together.setdefault("" if protocols is None else protocols[name], []).append(name)
-    for protocol, names in together.items():
-        sizes = {len(groups[name]) for name in names}
-        once = sizes == {len(behaviors)}  # one episode per scenario and behavior
-        if len(sizes) == 1 and len(names) >= (_MIN_SCENARIOS if once else 2):
-            summary = ALL if len(together) == 1 else f"{ALL}/{protocol}"
-            groups[summary] = [episode for name in names for episode in groups[name]]
+    rows = dict(made)
+    for label, chosen in {"": scenarios, **(groups or {})}.items():
+        for protocol, every in together.items():
+            names = [name for name in every if name in chosen]
+            sizes = {len(made[name]) for name in names}
+            once = sizes == {len(behaviors)}  # one episode per scenario and behavior
+            if len(sizes) == 1 and len(names) >= (_MIN_SCENARIOS if once else 2):
+                called = f"{ALL[:-1]} {label})" if label else ALL
+                rows[called if len(together) == 1 else f"{called}/{protocol}"] = [
+                    episode for name in names for episode in made[name]
+                ]
+    return rows
+
+
+def rows_of(
+    summaries: Mapping[str, Sequence[EpisodeRow]], behaviors: Sequence[str], random: Mapping[str, Sequence[str]]
+) -> list[BenchmarkRow]:
+    """Rows of each scenario, and over several, by behavior.
+
+    Args:
+        summaries: Their episodes, see :func:`summaries_of`.
+        behaviors: The behaviors, in order.
+        random: The random parts of each scenario.
+    """
     rows = []
-    for name, chosen in groups.items():
+    for name, chosen in summaries.items():
         first = {_pair(episode): episode for episode in chosen if episode.behavior == behaviors[0]}
         certain = not is_summary(name) and not random[name]
         for behavior in behaviors:
@@ -173,18 +217,24 @@ def _row(
 ) -> BenchmarkRow:
     episodes = placed(every)
     outcomes = [episode.outcome for episode in episodes]
+    pairs = [(episode, first[_pair(episode)]) for episode in episodes if _pair(episode) in first]
+    shown_as_shares = frozenset() if certain else _PROPORTIONS
+    scenarios = [episode.scenario for episode in episodes] if is_summary(name) else None
+    metrics = estimates(_columns(episodes), shown_as_shares, scenarios)
     shares: dict[str, Any] = {
         outcome: proportion(outcomes.count(outcome), len(outcomes), certain=certain)
         for outcome in ("success", "collision", "timeout")
     }
-    pairs = [(episode, first[_pair(episode)]) for episode in episodes if _pair(episode) in first]
-    shown_as_shares = frozenset() if certain else _PROPORTIONS
+    if scenarios is not None:
+        is_outcome = {outcome: [float(one == outcome) for one in outcomes] for outcome in shares}
+        for outcome, wide in estimates(is_outcome, is_outcome, scenarios).items():
+            shares[outcome] = shares[outcome].model_copy(update={"low": wide.low, "high": wide.high})
     return BenchmarkRow(
         scenario=name,
         behavior=behavior,
         episodes=len(episodes),
-        metrics=estimates({key: [episode.metrics[key] for episode in episodes] for key in KEYS}, shown_as_shares),
-        paired=_paired_differences(pairs, shown_as_shares) if pairs else {},
+        metrics=metrics,
+        paired=paired_differences(pairs, KEYS, shown_as_shares, together=is_summary(name)) if pairs else {},
         zones={} if is_summary(name) else _zones(episodes),
         failed={
             outcome: [episode.seed for episode in episodes if episode.outcome == outcome]
@@ -196,6 +246,24 @@ def _row(
         incident_seeds={} if is_summary(name) else incident_seeds(every),
         **shares,
     )
+
+
+def _columns(episodes: Sequence[EpisodeRow], keys: Sequence[str] = KEYS) -> dict[str, list[float | None]]:
+    """The values of each metric.
+
+    ``contacts_per_hour`` is a ratio of two means. Its values are linearised (Woodruff 1971), so that their mean is the
+    ratio, and their spread that of the ratio: R + (c - R t) / mean(t), with the contacts c and hours t of an episode.
+    """
+    columns = {key: [episode.metrics[key] for episode in episodes] for key in keys}
+    if "contacts_per_hour" in columns:
+        contacts = [episode.metrics["collision_count"] or 0.0 for episode in episodes]
+        hours = [(episode.metrics["driving_time"] or 0.0) / 3600.0 for episode in episodes]
+        all_hours = math.fsum(hours)
+        ratio, mean = (math.fsum(contacts) / all_hours, all_hours / len(hours)) if all_hours else (math.nan, 1.0)
+        columns["contacts_per_hour"] = [
+            _known(ratio + (c - ratio * t) / mean) for c, t in zip(contacts, hours, strict=True)
+        ]
+    return columns
 
 
 def _zones(episodes: list[EpisodeRow]) -> dict[str, dict[str, Estimate]]:
@@ -212,15 +280,33 @@ def _frequent_failures(episodes: Sequence[EpisodeRow]) -> dict[str, int]:
     return dict(count.most_common(_MAX_FAILURES))
 
 
-def _paired_differences(pairs: Sequence[tuple[EpisodeRow, EpisodeRow]], shares: Collection[str]) -> dict[str, Estimate]:
-    """Estimates of the differences of pairs; for shares with an interval that is not empty if all pairs agree."""
-    values = {key: [(a.metrics[key], b.metrics[key]) for a, b in pairs] for key in KEYS}
-    known = {key: [(a, b) for a, b in both if a is not None and b is not None] for key, both in values.items()}
-    differences = estimates({key: [a - b for a, b in both] for key, both in known.items()})
+def paired_differences(
+    pairs: Sequence[tuple[EpisodeRow, EpisodeRow]],
+    keys: Sequence[str],
+    shares: Collection[str],
+    *,
+    together: bool,
+) -> dict[str, Estimate]:
+    """Estimates of the differences of pairs; for shares with an interval that is not empty if all pairs agree.
+
+    Args:
+        pairs: Episodes with the same scenario and seed.
+        keys: The metrics.
+        shares: Those of them that are 0 or 1.
+        together: Whether the pairs are of several scenarios, which are then resampled.
+    """
+    mine, other = (_columns(side, keys) for side in zip(*pairs, strict=True))
+    values = {key: list(zip(mine[key], other[key], strict=True)) for key in keys}
+    apart = {key: [None if a is None or b is None else a - b for a, b in both] for key, both in values.items()}
+    differences = estimates(apart, (), [a.scenario for a, _ in pairs] if together else None)
     for key in shares:
-        if known[key]:
-            count = Counter((a > 0, b > 0) for a, b in known[key])
-            differences[key].low, differences[key].high = newcombe(*(count[pair] for pair in _TABLE))
+        known = [(a > 0, b > 0) for a, b in values.get(key, ()) if a is not None and b is not None]
+        if known:
+            count, drawn = Counter(known), differences[key]
+            intervals = [newcombe(*(count[pair] for pair in _TABLE))]
+            if together and drawn.low is not None and drawn.high is not None:
+                intervals.append((drawn.low, drawn.high))
+            drawn.low, drawn.high = _widest(intervals)
     return differences
 
 
@@ -230,84 +316,3 @@ def _pair(episode: EpisodeRow) -> tuple[str, int]:
 
 def _known(value: float) -> float | None:
     return None if math.isnan(value) else value
-
-
-_MAX_SEEDS = 5
-"""Number of seeds without room that a message lists."""
-_MAX_HEADLINE_SEEDS = 3
-"""Number of seeds of an incident that a message lists."""
-
-
-def placed(episodes: Sequence[EpisodeRow]) -> list[EpisodeRow]:
-    """The episodes that took place: those whose seed had room for every object."""
-    return [episode for episode in episodes if episode.outcome != CROWDED]
-
-
-def incident_counts(episodes: Sequence[EpisodeRow]) -> dict[str, int]:
-    """Number of episodes by incident; incidents that did not occur are left out."""
-    return {key: len(affected) for key, affected in _episodes_with(episodes).items() if affected}
-
-
-def incident_seeds(episodes: Sequence[EpisodeRow]) -> dict[str, list[int]]:
-    """Seeds of the episodes of one row by incident; incidents that did not occur are left out."""
-    return {
-        key: sorted(episode.seed for episode in affected)
-        for key, affected in _episodes_with(episodes).items()
-        if affected
-    }
-
-
-def _episodes_with(episodes: Sequence[EpisodeRow]) -> dict[str, list[EpisodeRow]]:
-    """Episodes with each incident."""
-    return {
-        "human_contacts": [episode for episode in episodes if episode.human_contacts > 0],
-        "left": [episode for episode in episodes if episode.left],
-        "jumped": [episode for episode in episodes if episode.jumped],
-        "contacts_between_steps": [
-            episode for episode in episodes if (episode.metrics.get("contacts_between_steps") or 0.0) > 0.0
-        ],
-        "seen": [episode for episode in episodes if (episode.metrics.get("seen_ratio") or 0.0) > 0.0],
-        LOST: [episode for episode in episodes if episode.lost],
-        CROWDED: [episode for episode in episodes if episode.outcome == CROWDED],
-    }
-
-
-def _seeds(seeds: Sequence[int]) -> str:
-    """The first seeds in words, each once: ``seeds 1, 4, 7 and 2 more``."""
-    each = sorted(set(seeds))
-    return f"seed{'s' * (len(each) > 1)} {listed([str(seed) for seed in each], _MAX_HEADLINE_SEEDS)}"
-
-
-def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
-    """Incidents besides outcomes, with the number of episodes; empty without incidents.
-
-    Args:
-        episodes: The episodes of all scenarios and behaviors.
-    """
-    messages, seeds_of = list[str](), incident_seeds(episodes)
-    words = {
-        "contacts_between_steps": "robots touched something between steps in",
-        "human_contacts": "contacts between people, or other moving obstacles, in",
-        "left": "objects left the world in",
-        "jumped": "objects jumped over their goal in",
-        "seen": "robots were seen in",
-    }
-    for key, what in words.items():
-        if key in seeds_of:
-            contacts = sum(episode.human_contacts for episode in episodes) if key == "human_contacts" else 0
-            count = f"{plural(contacts, 'contact')}; " if contacts else ""
-            where = f"({count}{_seeds(seeds_of[key])})"
-            messages.append(f"{what} {len(seeds_of[key])} of {len(placed(episodes))} episodes {where}")
-    if LOST in seeds_of:
-        why = next(episode.lost for episode in episodes if episode.lost)
-        many = f"{len(seeds_of[LOST])} of {len(placed(episodes))} episodes"
-        messages.append(f"the policy was lost in {many} ({_seeds(seeds_of[LOST])}), which ended there: {why}")
-    for name in dict.fromkeys(episode.scenario for episode in episodes):
-        mine = [episode for episode in episodes if episode.scenario == name]
-        crowded = sorted({episode.seed for episode in mine if episode.outcome == CROWDED})
-        if crowded:
-            where = f" of {name}" if len({episode.scenario for episode in episodes}) > 1 else ""
-            count = f"{len(crowded)} of {len({episode.seed for episode in mine})} seeds{where}"
-            seeds = listed([str(seed) for seed in crowded], _MAX_SEEDS)
-            messages.append(f"{count} had no room and do not count ({CROWDED}): {seeds}")
-    return messages

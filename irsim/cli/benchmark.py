@@ -225,13 +225,16 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     if _BETWEEN in columns:
         legend += "; between: contacts of a robot within a step, which no end of a step shows"
     out.print(Text(legend, "dim"))
-    summaries = {row.scenario for row in result.rows if is_summary(row.scenario)} or {
-        row.scenario for row in result.rows[-1:]
-    }
+    wide = [row.scenario for row in result.rows if is_summary(row.scenario)]
+    summaries = list(dict.fromkeys(wide or [row.scenario for row in result.rows[-1:]]))
     for row in result.rows:
         if row.paired and row.scenario in summaries:
             where = f"{row.scenario}: " if len(summaries) > 1 else ""
             out.print(where + _difference_line(row, behaviors[row.behavior], behaviors[result.behaviors[0]]))
+    for name in summaries if len(behaviors) > 2 else ():
+        mine = sorted((one for one in result.ranks if one.scenario == name), key=lambda one: one.rank)
+        told = [f"{behaviors[one.behavior]} {one.rank:g} ({one.low} to {one.high})" for one in mine]
+        out.print(f"{name}: ranks by success, and those that the intervals allow: {', '.join(told)}")
     suite = hasattr(result, "facts")
     failed = [row for row in result.rows if row.failed]
     for row in failed[: MAX_FAILED_LINES if suite else None]:

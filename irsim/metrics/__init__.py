@@ -25,6 +25,7 @@ __all__ = [
     "closest",
     "episode_metrics",
     "least",
+    "mcnemar",
     "newcombe",
     "robot_metrics",
     "spread",
@@ -39,6 +40,6 @@ __getattr__, __dir__ = lazy_names(
             ("Approach", "Clearance", "approaches", "clearance", "closest", "least"), "irsim.navigation.clearances"
         ),
         **dict.fromkeys(("EpisodeMetrics", "episode_metrics", "robot_metrics"), "irsim.metrics.episode"),
-        **dict.fromkeys(("bootstrap", "newcombe", "spread", "wilson"), "irsim.metrics.statistics"),
+        **dict.fromkeys(("bootstrap", "mcnemar", "newcombe", "spread", "wilson"), "irsim.metrics.statistics"),
     },
 )

@@ -156,6 +156,8 @@ def _extras() -> tuple[Metric, ...]:
         ),
         either("goal_visible_ratio", "0-1", "share of time with a straight line to its goal free of static objects"),
         less("left_world", "0/1", "its position was outside the world", "max"),
+        more("arrived_share", "0-1", "share of the robots that arrived before the horizon, collisions or not"),
+        less("driving_time", "s", "time until it arrived, or until the end of the episode"),
     )
 
 
@@ -176,6 +178,21 @@ EPISODE_METRICS: tuple[Metric, ...] = (
         "s",
         "when the last robot arrived, the greatest time_to_goal (makespan); undefined if one never did",
         "max",
+        better="less",
+    ),
+    Metric(
+        "restricted_time",
+        "s",
+        "mean over all robots of the time of arrival, the horizon for those that did not arrive (restricted mean)",
+        canonical=False,
+        better="less",
+    ),
+    Metric(
+        "contacts_per_hour",
+        "1/h",
+        "contacts of a robot that began before it arrived, for each hour that it drove; of a row the mean of its "
+        "contacts over the mean of its driving_time",
+        canonical=False,
         better="less",
     ),
     Metric(

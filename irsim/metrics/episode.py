@@ -134,6 +134,10 @@ def _of_episode(robots: list[dict[str, float]]) -> dict[str, float]:
     values["pedestrian_delay"] = math.nan  # needs a second run without robots, which irsim.benchmark makes
     times = [robot["time_to_goal"] for robot in robots]
     values["aggregated_time"] = max(times) if times and not any(map(math.isnan, times)) else math.nan
+    values["restricted_time"] = math.nan  # needs the horizon, which irsim.benchmark has
+    driven = math.fsum(robot["driving_time"] for robot in robots)
+    contacts = math.fsum(robot["collision_count"] for robot in robots)
+    values["contacts_per_hour"] = 3600.0 * contacts / driven if driven > 0 else math.nan
     values["explored"] = math.nan  # needs the fog at the end of the run, which irsim.benchmark has
     return values
 

@@ -121,7 +121,9 @@ def outcome_metrics(track: Track) -> dict[str, float]:
       arrived; ``collision_count`` has them, too, only where ``world.contacts: swept`` makes them collisions.
     - ``timeout``: neither arrived nor stopped by a collision at the end; a contact after which the robot drives on
       (``world.collision_mode``) counts as a contact, not as the end.
-    - ``time_to_goal`` [s]: time of the first arrival; NaN without one.
+    - ``time_to_goal`` [s]: time of the first arrival; NaN without one. ``driving_time`` [s]: time from when it came
+      into the world until it arrived, or to the end.
+    - ``arrived_share``: the same as ``goal_reached``; the mean over robots is the share of those that arrived.
     """
     kinds = [kind for _, kind in track.collisions]
     agents, humans = kinds.count(ROBOT), kinds.count(HUMAN)
@@ -135,5 +137,7 @@ def outcome_metrics(track: Track) -> dict[str, float]:
         "human_collisions": float(humans),
         "contacts_between_steps": float(track.between_steps),
         "timeout": float(track.arrival is None and not (kinds and track.stopped)),
+        "arrived_share": float(track.arrival is not None),
+        "driving_time": (len(track.pose) - 1) * track.step_time,
         "time_to_goal": float("nan") if track.arrival is None else track.arrival * track.step_time,
     }

@@ -9,12 +9,14 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["bootstrap", "bootstraps", "newcombe", "spread", "wilson"]
+__all__ = ["bootstrap", "bootstraps", "mcnemar", "nested_bootstraps", "newcombe", "spread", "wilson"]
 
 _Z = 1.959963984540054
 """Quantile of the normal distribution for a two-sided interval of 95 %."""
 _RESAMPLES = 10_000
 """Number of bootstrap resamples."""
+_NESTED = 2_000
+"""Number of resamples of a nested bootstrap."""
 _SEED = 20_230_616
 """Fixed seed of the resamples, so that equal values always have the same interval."""
 _BLOCK = 2_000_000
@@ -88,6 +90,71 @@ def bootstraps(samples: Sequence[Sequence[float] | NDArray[np.float64]]) -> list
             low, high = np.percentile(np.concatenate(parts) / count, [2.5, 97.5])
             intervals[place] = float(low), float(high)
     return intervals
+
+
+def nested_bootstraps(
+    columns: Sequence[Sequence[float] | NDArray[np.float64]], groups: Sequence[int]
+) -> list[tuple[float, float]]:
+    """95 % intervals of the means of columns whose values come in groups, such as episodes of several scenarios.
+
+    In each of 2,000 resamples groups are drawn with replacement, and values within each group that was drawn (Davison
+    and Hinkley 1997, 3.8): values of one group may be more alike than values of different groups. Always the same
+    draws. Values that are NaN are left out of their mean. NaN for a column of fewer than two values.
+
+    Args:
+        columns: Columns of N values.
+        groups: Number of the group of each value, from 0 on; the values of a group lie together.
+    """
+    table = np.array([np.asarray(column, dtype=np.float64) for column in columns]).reshape(len(columns), -1).T
+    known = ~np.isnan(table)
+    table = np.where(known, table, 0.0)
+    parts = []
+    for weights in _nested(tuple(np.bincount(groups).tolist())):
+        count = weights @ known
+        with np.errstate(invalid="ignore"):
+            parts.append(np.where(count > 0, weights @ table / count, np.nan))
+    intervals = []
+    for column, means in zip(known.T, np.concatenate(parts).T, strict=True):
+        enough = int(column.sum()) >= 2
+        low, high = np.nanpercentile(means, [2.5, 97.5]) if enough else (math.nan, math.nan)
+        intervals.append((float(low), float(high)))
+    return intervals
+
+
+def mcnemar(mine: int, other: int) -> float:
+    """Exact two-sided p-value of paired shares (McNemar 1947): whether either side has it alone equally often.
+
+    Args:
+        mine: Number of pairs in which only the first has the property.
+        other: Number of pairs in which only the second has it.
+    """
+    n, few = mine + other, min(mine, other)
+    return float(min(1.0, 2 * sum(math.comb(n, k) for k in range(few + 1)) / 2**n))
+
+
+def _nested(sizes: tuple[int, ...]) -> Iterator[NDArray[np.float64]]:
+    """Weights of values in groups of these sizes, in blocks of (resamples, values)."""
+    if sum(sizes) * _NESTED <= _MAX_CACHED:
+        yield _nested_weights(sizes)
+        return
+    rng = np.random.default_rng(_SEED)
+    rows = max(1, _BLOCK // sum(sizes))
+    for begin in range(0, _NESTED, rows):
+        yield _draw_nested(rng, min(rows, _NESTED - begin), sizes)
+
+
+@lru_cache(maxsize=2)
+def _nested_weights(sizes: tuple[int, ...]) -> NDArray[np.float64]:
+    return _draw_nested(np.random.default_rng(_SEED), _NESTED, sizes)
+
+
+def _draw_nested(rng: np.random.Generator, rows: int, sizes: tuple[int, ...]) -> NDArray[np.float64]:
+    size, begin = np.array(sizes), np.cumsum([0, *sizes[:-1]])
+    groups = rng.integers(0, len(sizes), size=(rows, len(sizes)))
+    within = (rng.random((rows, len(sizes), max(sizes))) * size[groups][:, :, None]).astype(np.int64)
+    chosen = begin[groups][:, :, None] + within + (sum(sizes) * np.arange(rows))[:, None, None]
+    taken = np.arange(max(sizes)) < size[groups][:, :, None]
+    return np.bincount(chosen[taken], minlength=rows * sum(sizes)).reshape(rows, sum(sizes)).astype(np.float64)
 
 
 def _resamples(count: int) -> Iterator[NDArray[np.float64]]:

@@ -17,6 +17,8 @@ __all__ = [
     "BenchmarkRow",
     "EpisodeRow",
     "Estimate",
+    "PolicyPair",
+    "PolicyRank",
     "Proportion",
     "SuiteResult",
     "SuiteScenarioFacts",
@@ -35,7 +37,8 @@ class Proportion(Result):
     rate: float
     """``count / n``."""
     low: float | None
-    """Lower end of the 95 % interval (Wilson); None where nothing is random, because the share is then exact."""
+    """Lower end of the 95 % interval (Wilson); None where nothing is random, because the share is then exact. Of rows
+    over several scenarios see ``BenchmarkRow.scenario``."""
     high: float | None
     """Upper end of the interval."""
 
@@ -61,8 +64,10 @@ class BenchmarkRow(Result):
 
     scenario: str
     """The file; ``(all)`` for all files together, if each has the same number of episodes, and that number is above
-    one or there are at least ten files. A suite with several protocols has ``(all)/freeze``, ``(all)/yield`` instead:
-    each protocol is summarised on its own."""
+    one or there are at least ten files; ``(all TAG)`` for those with a tag of their suite. A suite with several
+    protocols has ``(all)/freeze``, ``(all)/yield`` instead: each protocol is summarised on its own. Scenarios have
+    equal weights. Intervals of these rows are of a nested bootstrap (2,000 resamples of scenarios, and of seeds within
+    each), of shares at least Wilson's and Newcombe's: they say what other scenarios of the same kind would give."""
     behavior: str
     """The robots' behavior, or ``as-written``."""
     episodes: int
@@ -95,6 +100,41 @@ class BenchmarkRow(Result):
     which are not among ``episodes``. Only those above 0."""
     incident_seeds: dict[str, list[int]] = Field(default_factory=dict)
     """Seeds of these episodes by the same names; empty for ``(all)``."""
+
+
+class PolicyPair(Result):
+    """Two policies in the same episodes, by success."""
+
+    scenario: str
+    """The row, as ``BenchmarkRow.scenario``."""
+    behavior: str
+    """One policy."""
+    against: str
+    """The other one."""
+    difference: Estimate
+    """Share of episodes that succeed under ``behavior`` minus that under ``against``, with its interval."""
+    only_behavior: int
+    """Number of episodes in which only ``behavior`` succeeds."""
+    only_against: int
+    """Number of episodes in which only ``against`` succeeds."""
+    p: float | None
+    """Exact two-sided p-value of McNemar's test; None over several scenarios, whose episodes are not independent. Of
+    many pairs some are below 0.05 by chance: ``verdict.py --all-pairs`` corrects that (Holm)."""
+
+
+class PolicyRank(Result):
+    """The rank of a policy by success."""
+
+    scenario: str
+    """The row, as ``BenchmarkRow.scenario``."""
+    behavior: str
+    """The policy."""
+    rank: float
+    """Its rank, 1 for the greatest share of successes; of equals the mean of their places."""
+    low: int
+    """Its best rank by the 95 % intervals of ``pairs``: one more than the number of policies that are better."""
+    high: int
+    """Its worst rank that they allow."""
 
 
 class EpisodeRow(Result):
@@ -160,6 +200,12 @@ class BenchmarkResult(Result):
     rows: list[BenchmarkRow]
     """By scenario, then behavior; then all scenarios together, if there are several with equal numbers of episodes, and
     each protocol of a suite on its own."""
+    groups: dict[str, list[str]] = Field(default_factory=dict)
+    """Scenarios of each tag of the suite, which have rows ``(all TAG)``."""
+    pairs: list[PolicyPair] = Field(default_factory=list)
+    """Every pair of policies in every row."""
+    ranks: list[PolicyRank] = Field(default_factory=list)
+    """Rank of each policy in every row; empty with one policy."""
     episodes: list[EpisodeRow]
     """Every episode."""
     incidents: list[str] = Field(default_factory=list)

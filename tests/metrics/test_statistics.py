@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from irsim.metrics import bootstrap, newcombe, spread, wilson
+from irsim.metrics.statistics import nested_bootstraps
 
 
 def test_wilson_as_published() -> None:
@@ -40,6 +41,20 @@ def test_bootstrap_is_near_the_normal_interval_and_repeatable() -> None:
     assert bootstrap([*values, math.nan]) == (low, high)
     assert bootstrap([2.0, 2.0, 2.0]) == (2.0, 2.0)
     assert all(map(math.isnan, bootstrap([1.0])))
+
+
+def test_a_nested_bootstrap_is_as_wide_as_the_groups_differ() -> None:
+    rng = np.random.default_rng(3)
+    groups = np.repeat(range(20), 30)
+    alike, apart = rng.normal(0.0, 1.0, 600), np.repeat(rng.normal(0.0, 1.0, 20), 30)
+    [(low, high), (far, away)] = nested_bootstraps([alike, apart], groups)
+    assert high - low == pytest.approx(2 * 1.96 / math.sqrt(600) * math.sqrt(2), rel=0.25)  # within and between groups
+    assert away - far == pytest.approx(2 * 1.96 * apart.std(ddof=1) / math.sqrt(20), rel=0.15)
+    assert nested_bootstraps([alike, apart], groups)[0] == (low, high)
+    uneven = np.repeat([0, 1, 2], [5, 1, 3])
+    values = np.array([1.0] * 5 + [math.nan] + [1.0] * 3)
+    assert nested_bootstraps([values], uneven) == [(1.0, 1.0)]
+    assert all(map(math.isnan, nested_bootstraps([np.full(9, math.nan)], uneven)[0]))
 
 
 def test_spread_leaves_out_what_is_undefined() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.benchmarks.summary import rows_of
+from irsim.benchmarks.summary import rows_of, summaries_of
 from irsim.env import Env
 from irsim.metrics import episode_metrics
 from irsim.metrics.watching import blocking_objects, goal_visible_ratio
@@ -141,7 +141,8 @@ def test_a_run_a_benchmark_and_a_trace_say_the_same() -> None:
     assert (row.incidents["seen"], compared.incidents) == (1, ["robots were seen in 1 of 1 episodes (seed 0)"])
     assert episode.zones == metrics.zones
     assert {zone: {key: e.mean for key, e in values.items()} for zone, values in row.zones.items()} == metrics.zones
-    assert rows_of([episode], compared.scenarios, compared.behaviors, compared.random)[0].zones == row.zones
+    rows = summaries_of([episode], compared.scenarios, compared.behaviors)
+    assert rows_of(rows, compared.behaviors, compared.random)[0].zones == row.zones
 
 
 def test_a_result_says_what_happened_at_each_zone() -> None:

@@ -67,7 +67,7 @@ def test_a_seed_begins_alike_with_more_people() -> None:
 def test_metrics_it_names_are_defined() -> None:
     known = {metric.key for metric in METRICS}
     named = {span for span in spans(BODY) if re.fullmatch(r"[a-z]+(_[a-z]+)+", span)} & {
-        *("goal_reached", "collision_count", "time_to_goal", "path_length", "distance_to_human_min"),
+        *("arrived_share", "contacts_per_hour", "time_to_goal", "path_length", "distance_to_human_min"),
         *("personal_space_intrusion_ratio", "space_compliance"),
     }
     assert len(named) == 7
@@ -203,6 +203,30 @@ def test_verdicts_name_the_policies_of_a_suite(tmp_path: Path) -> None:
     (tmp_path / "results.json").write_text(text, encoding="utf-8")
     [answer] = verdict(tmp_path / "results.json")[1]["differences"]
     assert (answer["behavior"], answer["against"], answer["verdict"]) == ("two", "one", "better")
+
+
+def test_all_pairs_are_corrected_for_their_number_and_can_be_chosen(tmp_path: Path) -> None:
+    def pair(one: str, other: str, difference: tuple[float, float, float], p: float | None) -> dict[str, Any]:
+        mean, low, high = difference
+        estimate = {"n": 20, "mean": mean, "low": low, "high": high}
+        known = {"scenario": "hall", "only_behavior": 6, "only_against": 0}
+        return {**known, "behavior": one, "against": other, "difference": estimate, "p": p}
+
+    pairs = [
+        pair("a", "b", (0.3, 0.1, 0.5), 0.03),  # real alone, not among three
+        pair("a", "c", (0.8, 0.5, 0.9), 0.0001),
+        pair("b", "c", (0.0, -0.2, 0.2), 1.0),
+    ]
+    told = {"behaviors": ["a", "b", "c"], "rows": [row("a", 9, 20, None)], "pairs": pairs, "notes": []}
+    path = tmp_path / "result.json"
+    path.write_text(json.dumps(told), encoding="utf-8")
+    code, answer = verdict(path, "--all-pairs")
+    assert [one["verdict"] for one in answer["differences"]] == ["open", "better", "open"]
+    assert [one["p_corrected"] for one in answer["differences"]] == pytest.approx([0.06, 0.0003, 1.0])
+    assert code == 1
+    code, answer = verdict(path, "--all-pairs", "--policy", "c", "--verdict", "better")
+    assert ([one["behavior"] for one in answer["differences"]], answer["comparisons"]) == (["a"], 2)
+    assert verdict(path, "--all-pairs", "--scenario", "yard")[0] == 2
 
 
 def test_the_script_knows_what_is_better_without_irsim() -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from irsim.benchmarks.report.rows import policy_labels
+from irsim.benchmarks.summary import is_summary
 from irsim.common.text import markdown_code, markdown_text, plural
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion, SuiteResult
 
 __all__ = [
     "INTERVALS",
+    "RANKS",
     "Table",
     "about_of",
     "cells_of",
@@ -18,6 +20,7 @@ __all__ = [
     "differences_of",
     "facts_of",
     "markdown",
+    "ranks_of",
     "title_of",
     "zones_of",
 ]
@@ -40,10 +43,12 @@ _DIFFERENCES = (
     ("path_length", "path [m]"),
 )  # fmt: skip
 INTERVALS = (
-    "Intervals are 95 %: Wilson's for shares, Newcombe's for their differences, bootstrap for means. Times count "
-    "robots that arrived."
+    "Intervals are 95 %: Wilson's for shares, Newcombe's for their differences, bootstrap for means. Rows over several "
+    "scenarios give each the same weight, and their intervals resample scenarios, too. Times count robots that arrived."
 )
 """Notes that a reader needs to judge the numbers."""
+RANKS = "Ranks by success, with those that the intervals of all pairs allow"
+"""The heading of the ranks."""
 Table = tuple[list[str], list[list[str]]]
 """Headings and rows of cells."""
 
@@ -66,6 +71,8 @@ def markdown(result: BenchmarkResult, notes: Sequence[str] = ()) -> str:
     if differences := differences_of(result):
         first = markdown_text(labels[result.behaviors[0]])
         lines += ["", f"Differences to {first} with the same seeds:", "", *_table(differences)]
+    if ranks := ranks_of(result):
+        lines += ["", f"{RANKS}:", "", *_table(ranks)]
     lines += ["", "Policies:", ""]
     lines += [f"- {markdown_text(label)}: {markdown_code(text)}" for text, label in labels.items()]
     lines += ["", *(f"Note: {markdown_text(note)}  " for note in (*result.notes, *notes))]
@@ -165,6 +172,21 @@ def differences_of(result: BenchmarkResult) -> Table | None:
         if row.paired
     ]  # fmt: skip
     return (["scenario", "policy", "pairs", *(heading for _, heading in _DIFFERENCES)], rows) if rows else None
+
+
+def ranks_of(result: BenchmarkResult) -> Table | None:
+    """The table of ranks over several scenarios, or else of each scenario; None with fewer than three policies."""
+    if len(result.behaviors) < 3:
+        return None
+    labels = policy_labels(result)
+    wide = [one for one in result.ranks if is_summary(one.scenario)] or result.ranks
+    names = list(dict.fromkeys(one.scenario for one in wide))
+    rows = [
+        [one.scenario, labels[one.behavior], f"{one.rank:g} ({one.low} to {one.high})"]
+        for name in names
+        for one in sorted((one for one in wide if one.scenario == name), key=lambda one: one.rank)
+    ]
+    return (["scenario", "policy", "rank"], rows) if rows else None
 
 
 def cells_of(row: BenchmarkRow, columns: Sequence[tuple[str, str]] = _COLUMNS) -> list[str]:

@@ -10,6 +10,7 @@ from html import escape
 from irsim.benchmarks.report.charts import charts
 from irsim.benchmarks.report.markdown import (
     INTERVALS,
+    RANKS,
     Table,
     about_of,
     cells_of,
@@ -17,6 +18,7 @@ from irsim.benchmarks.report.markdown import (
     columns_of,
     differences_of,
     facts_of,
+    ranks_of,
     title_of,
     zones_of,
 )
@@ -59,6 +61,7 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
         "<h2>Zones</h2><p>Means over the robots.</p>" + _table(zones) if zones else "",
         f"<h2>Differences to {_shown(labels[result.behaviors[0]])} with the same seeds</h2>" + _table(differences)
         if differences else "",
+        f"<h2>{_shown(RANKS)}</h2>" + _table(ranks) if (ranks := ranks_of(result)) else "",
         "<h2>Policies</h2>", "<ul>",
         *(f"<li>{_shown(label)}: <code>{_shown(text)}</code></li>" for text, label in labels.items()), "</ul>",
         *(f'<p class="note">{_shown(note)}</p>' for note in (*result.notes, *notes)),
