@@ -1318,6 +1318,11 @@ def least_clearances(
 def intersects(
     parts_a: Sequence[Part], pose_a: Sequence[float], parts_b: Sequence[Part], pose_b: Sequence[float]
 ) -> bool: ...
+def distance(
+    parts_a: Sequence[Part], pose_a: Sequence[float], parts_b: Sequence[Part], pose_b: Sequence[float]
+) -> float:
+    """Distance [m] between the footprints of two bodies, as of :func:`clearances`: negative where they overlap."""
+
 def best_velocity(
     planes: Sequence[Sequence[float]], hard: int, max_speed: float, preferred: tuple[float, float]
 ) -> tuple[float, float, bool]:

@@ -25,6 +25,7 @@ from irsim.runs.recorder import Recorder
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import import_modules
 from irsim.scenario.resolve.resolved import random_parts
+from irsim.simulation.outcome import is_over
 from irsim.validation.scene_table import scene_table
 
 if TYPE_CHECKING:
@@ -223,7 +224,7 @@ def animate(
     for step in range(steps):
         if move is not None:
             move(step + 1)
-        elif env.done() and not go_on:
+        elif not go_on and is_over(env.simulation):
             if progress is not None and step:
                 progress(step, step)  # it is over: the count ends at its total
             break

@@ -64,6 +64,8 @@ def run(
 ) -> RunResult:
     """Simulate one episode, until every robot has arrived or stopped, or the horizon is reached.
 
+    Without robots it ends when everything that moves has arrived or stopped, and at once where nothing moves.
+
     Args:
         path: Scenario file, or ``SUITE/SCENARIO``.
         text: Text of the scenario, instead of ``path``.
@@ -158,11 +160,12 @@ def run(
         if recorder is not None and recorded is not None and record is not False:
             recorded(recorder.run_id)
         files, lost = list[str](), None
+        end = until if connection is None or env.robot_list else "time_limit"  # a program may move obstacles
         try:
             if save is None and not show:
-                advance(env, horizon, progress, until=until, recorder=recorder)
+                advance(env, horizon, progress, until=end, recorder=recorder)
             else:
-                target, on = Path(save) if save is not None else None, until == "time_limit"
+                target, on = Path(save) if save is not None else None, end == "time_limit"
                 files = animate(env, horizon, target, progress, recorder, go_on=on)
         except (PolicyLostError, BridgeLostError) as error:
             lost = error

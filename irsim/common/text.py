@@ -24,6 +24,8 @@ __all__ = [
 
 MAX_NAME = 40
 """Number of characters of a name that a message shows."""
+_MIN_SENTENCE = 100
+"""Number of characters from which on a text that is cut is a sentence, not a name or a value."""
 _DECIMALS = 3
 """Decimals of numbers in lists of differences."""
 _MOST_DECIMALS = 6
@@ -116,12 +118,17 @@ def _metres(length: float, decimals: int) -> str:
 def clean(text: object, longest: int = 80) -> str:
     """A text as one line of limited length, without control characters, which could mislead a terminal or a reader.
 
+    A sentence that is too long ends after a whole word, so that no number loses its end.
+
     Args:
         text: A name or a message.
         longest: Number of characters to keep.
     """
     shown = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in str(text))
-    return shown if len(shown) <= longest else shown[: longest - 3] + "..."
+    if len(shown) <= longest:
+        return shown
+    words = shown[: longest - 3].rpartition(" ")[0]
+    return f"{words} ..." if len(words) > _MIN_SENTENCE else f"{shown[: longest - 3]}..."
 
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from irsim.common.arguments import check_whole_number
@@ -13,6 +14,7 @@ from irsim.scenario.limits import Limits
 from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
 from irsim.simulation.build import steps_until
 from irsim.simulation.events import first_collisions
+from irsim.simulation.outcome import is_over
 from irsim.simulation.time_limit import default_time_limit
 
 if TYPE_CHECKING:
@@ -72,7 +74,7 @@ def _most_steps(objects: int, limits: Limits) -> tuple[int | None, str]:
 def advance(
     env: Env, steps: int, progress: Progress | None, *, until: Until = "done", recorder: EpisodeRecorder | None = None
 ) -> None:
-    """Advance an environment, by default until every robot has arrived or stopped.
+    """Advance an environment, by default until every robot has arrived or stopped, or all that moves if there are none.
 
     Args:
         env: The environment.
@@ -82,11 +84,13 @@ def advance(
         recorder: Records the steps.
     """
     until_done, touches = until != "time_limit", until == "first_collision"
-    chunk = 1 if touches else _CHUNK_STEPS
-    done, over = 0, until_done and bool(env.done())
+    nobody = not env.simulation.robots.any()
+    ended = partial(is_over, env.simulation) if nobody else env.done
+    chunk = 1 if touches or (until_done and nobody) else _CHUNK_STEPS
+    done, over = 0, until_done and bool(ended())
     while done < steps and not over:
         done += max(1, env.advance(min(chunk, steps - done), until_done=until_done, recorder=recorder))
-        over = (until_done and bool(env.done())) or (touches and _has_collided(env))
+        over = (until_done and bool(ended())) or (touches and _has_collided(env))
         if progress is not None:
             progress(done, done if over else steps)  # the count ends at its total
 

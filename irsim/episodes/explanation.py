@@ -37,6 +37,7 @@ from irsim.episodes.watching import sights_message, zones_message
 from irsim.results.episode import Left, RobotResult, ZoneResult
 from irsim.results.run import HorizonSource
 from irsim.simulation.events import Event
+from irsim.simulation.outcome import moves_by_itself
 from irsim.simulation.roles import name_of_humans
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def summary_message(
     parts = [
         between_steps_message(simulation, facts.between, facts.hits, brief=failed),
         hit if failed else None,  # the cause before what follows from it
-        rounds if rounds and len(robots) == 1 else _arrivals_message(robots, facts.time, facts.parked),
+        rounds if rounds and len(robots) == 1 else _arrivals_message(facts, robots),
         rounds if len(robots) > 1 else None,
         _waiting_message(facts),
         appearances_message(simulation),
@@ -126,10 +127,12 @@ def _people_may_overlap(facts: EpisodeFacts) -> bool:
     return people > 1 and facts.scenario.world.collision_mode == "unobstructed_obstacles"
 
 
-def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequence[str]) -> str:
+def _arrivals_message(facts: EpisodeFacts, robots: list[RobotResult]) -> str:
     """Say how many robots arrived and when, and how many of them after a collision."""
+    sim_time, parked = facts.time, facts.parked
     if not robots:
-        return f"no robots; {seconds(sim_time)} simulated"
+        idle = not sim_time and not any(map(moves_by_itself, facts.scenario.objects))
+        return "no robots, and nothing moves" if idle else f"no robots; {seconds(sim_time)} simulated"
     arrived = [robot.time_to_goal for robot in robots if robot.time_to_goal is not None]
     touched = sum(robot.outcome == "collision" for robot in robots if robot.time_to_goal is not None)
     if len(robots) > 1:

@@ -9,9 +9,10 @@ import numpy as np
 from irsim.simulation.events import Event, first_collisions, first_events, read_events
 
 if TYPE_CHECKING:
+    from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Outcome", "explored_share", "outcome_of", "robot_outcomes"]
+__all__ = ["Outcome", "explored_share", "is_over", "moves_by_itself", "outcome_of", "robot_outcomes"]
 
 Outcome = Literal["running", "success", "collision", "timeout"]
 
@@ -63,6 +64,27 @@ def outcome_of(simulation: Simulation, world: int = 0, *, time_limit: float | No
     if outcomes and all(outcome == "success" for outcome in outcomes):
         return "success"
     return "collision" if "collision" in outcomes else "timeout"
+
+
+def is_over(simulation: Simulation, world: int = 0) -> bool:
+    """Whether every robot has arrived or stopped; without robots, whether everything else that moves has.
+
+    Objects that wander or loop, or appear or vanish at a time, are never done; where nothing moves, it is over at once.
+    """
+    if simulation.robots.any():
+        return bool(simulation.state.done(world))
+    ended = simulation.arrived | simulation.stopped
+    return all(
+        ended[row] and not (record.wander or record.loop or record.vanish_time)
+        for row, record in enumerate(simulation.scenario.objects, world * simulation.objects)
+        if moves_by_itself(record)
+    )
+
+
+def moves_by_itself(record: ObjectRecord) -> bool:
+    """Whether an object changes its place without being pushed: by its behavior, or as it appears or vanishes."""
+    timed = bool(record.appear_time) or record.vanish_time is not None
+    return timed or (not record.static and record.active_behavior is not None)
 
 
 def explored_share(simulation: Simulation, world: int = 0) -> float | None:

@@ -27,6 +27,7 @@ from irsim.results.validation import DryRun, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, random_parts
 from irsim.simulation.events import Event, partner_of
+from irsim.simulation.outcome import is_over
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.step_cost import step_work
 from irsim.simulation.trace import Trace, join_traces, next_rows, present_row
@@ -95,7 +96,7 @@ def try_out(
     try:
         horizon, source = horizon_of(env.simulation, None, limits or DEFAULT_LIMITS)
         affordable = max(1, int(budget / max(1.0, step_work(scenario, env.simulation))))
-        wanted = min(horizon, affordable if steps is None else min(steps, affordable))
+        wanted = 0 if is_over(env.simulation) else min(horizon, affordable if steps is None else min(steps, affordable))
         trace, late = _simulate(env.simulation, wanted, seconds)
         answer = _summarise(
             env, scenario, trace, env.seed, None if source == "limits" else horizon, seconds if late else None
@@ -158,7 +159,7 @@ def _summarise(
     ended: Literal["done", "horizon", "budget"] = "budget"
     if bool(env.simulation.done()[0]):
         ended = "done"
-    elif horizon is not None and steps >= horizon:
+    elif horizon is not None and (steps >= horizon or is_over(env.simulation)):
         ended = "horizon"
     return DryRun(
         seed=seed,
@@ -276,7 +277,9 @@ def _progress_message(
             "estimated; the next dry run may end earlier or later): "
         )
     still = f", {len(parked)} {'is' if len(parked) == 1 else 'are'} parked (cannot move, no goal written)"
-    return begin + (f"{len(arrived)} of {robots} robots arrived" if robots else "no robots") + (still if parked else "")
+    if not robots:
+        return f"{begin}no robots" if trace.time[-1] else "no robots, and nothing moves"
+    return f"{begin}{len(arrived)} of {robots} robots arrived{still * bool(parked)}"
 
 
 def _problem_messages(hits: Sequence[Event], stuck: Sequence[Stuck], count: int) -> list[str]:

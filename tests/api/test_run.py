@@ -109,6 +109,27 @@ def test_failures_say_why(scenario: str, reason: str) -> None:
     assert reason in said
 
 
+CROSSER = """\
+obstacle:
+  - {kinematics: {name: omni}, state: [1, 1, 0], goal: [3, 1, 0], vel_max: [1, 1], behavior: {name: dash}}
+"""
+
+
+def test_a_run_of_nobody_ends_when_all_that_moves_has_arrived() -> None:
+    box = "obstacle: [{state: [3, 3], shape: {name: circle}}]\n"
+    empty = irsim.run(text=f"world: {{width: 5}}\n{box}")
+    assert (empty.steps, empty.summary) == (0, "no robots, and nothing moves")
+    assert irsim.validate(text=f"world: {{width: 5}}\n{box}", simulate=True).dry_run.summary == empty.summary
+    crossing = irsim.run(text="world: {width: 5}\n" + CROSSER)
+    arrived = [event.step for event in crossing.events if event.kind == "arrival"]
+    assert arrived == [crossing.steps]
+    assert "no robots; " in crossing.summary
+    on = irsim.run(text="world: {width: 5, time_limit: 9}\n" + CROSSER, until="time_limit")
+    assert on.sim_time == pytest.approx(9)
+    loop = CROSSER.replace("name: dash", "name: dash, loop: true")
+    assert irsim.run(text="world: {width: 5, time_limit: 9}\n" + loop).sim_time == pytest.approx(9)
+
+
 def test_a_horizon_beyond_the_limit_is_cut_and_said() -> None:
     result = irsim.run(text=text(19, world=", time_limit: 100"), limits=Limits(steps=20))
     assert (result.steps, result.time_limit_from) == (20, "limits")

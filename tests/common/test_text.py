@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from irsim.cli.output import prepare_streams
-from irsim.common.text import cell, decimal, escape_marks, markdown_code, markdown_text, plural
+from irsim.common.text import cell, clean, decimal, escape_marks, markdown_code, markdown_text, plural
 
 EVIL = "<img src=x onerror=alert(1)> [a](http://evil) | `c` & \u202egnp.exe"
 
@@ -61,6 +61,17 @@ def test_numbers_of_files_have_no_exponent_which_readers_of_yaml_take_for_text(
 ) -> None:
     assert decimal(value, digits) == text
     assert yaml.safe_load(decimal(value, digits)) == pytest.approx(value, abs=10**-digits)
+
+
+def test_a_long_sentence_is_cut_between_words_and_a_name_anywhere() -> None:
+    sentence = f"{'robot_0 went on, ' * 8}and it hit 'crate' at x 12.25 m"
+    cut = [clean(sentence, longest) for longest in range(120, len(sentence) + 1)]
+    assert cut[-1] == sentence
+    for text in cut[:-1]:
+        assert text.endswith(" ...")
+        assert sentence.startswith(f"{text.removesuffix('...')}")
+    assert clean("n" * 50, 40) == f"{'n' * 37}..."
+    assert len(clean("n" * 500, 300)) == 300
 
 
 def test_one_thing_is_singular() -> None:

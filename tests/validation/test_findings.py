@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import copy
+import json
 import math
 import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import irsim
+from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.env import Env
 from irsim.scenario.read import read
@@ -235,6 +239,31 @@ def test_overlaps_say_how_deep_and_where_to() -> None:
     assert math.dist(place, [2, 2]) < 0.5
     data["robot"][0]["state"] = [*place, 0]
     assert codes(data) == []
+
+
+@pytest.mark.parametrize("shape", [{"name": "circle", "radius": 0.3}, {"name": "rectangle", "length": 2, "width": 0.4}])
+def test_the_check_and_the_run_measure_one_depth(shape: dict[str, Any], tmp_path: Path) -> None:
+    cells = np.full((40, 80), 255, np.uint8)
+    cells[10:30, 20:50] = 0  # x 2..5 m, y 1..3 m are occupied, and so is all beyond x = 6 m
+    cells[:, 60:] = 0
+    Image.fromarray(cells).save(tmp_path / "map.png")
+    file = tmp_path / "world.yaml"
+    file.write_text(f"""\
+world: {{width: 8, height: 4, obstacle_map: map.png}}
+robot: {{kinematics: {{name: diff}}, shape: {json.dumps(shape)}, state: [7, 2.5, 0], behavior: {{name: dash}}}}
+""")
+    run = irsim.run(file, steps=1)
+    [message] = [item.message for item in run.warnings if item.code == "initial-overlap"]
+    assert run.robots[0].min_clearance is not None
+    assert f"the map, {metres(-run.robots[0].min_clearance)} deep" in message
+
+
+def test_outlines_that_cross_do_not_merely_touch() -> None:
+    bar = {"kinematics": {"name": "diff"}, "shape": {"name": "rectangle", "length": 4, "width": 0.2}, "goal": [9, 9]}
+    message = one({"robot": [{**bar, "state": [5, 5, 0]}, {**bar, "state": [5, 5, 1.57]}]}, "initial-overlap").message
+    assert message.endswith("in collision with 'robot_1'")
+    beside = {"robot": [{**bar, "state": [5, 5, 0]}, {**bar, "state": [6, 5.19995, 0]}]}
+    assert one(beside, "initial-overlap").message.endswith(": they touch")
 
 
 def test_a_start_in_the_map() -> None:

@@ -1,5 +1,6 @@
 // Small functions for the Python API and for tests.
 #include "bindings/helpers.hpp"
+#include "collision/distance.hpp"
 #include "collision/touch.hpp"
 #include "orca/half_planes.hpp"
 #include "orca/nearest.hpp"
@@ -11,17 +12,35 @@ namespace {
 
 using PoseNumbers = std::array<double, 3>;
 
-bool intersects(const std::vector<PartSpec>& parts_a, const PoseNumbers& a, const std::vector<PartSpec>& parts_b,
-                const PoseNumbers& b) {
-  Shapes shapes;
-  Outlines outlines;
-  for (const auto* parts : {&parts_a, &parts_b}) {
-    shapes.add(draw_outlines(*parts, Draws({}, Stream::shape, 0)), false);
+using Parts = std::vector<PartSpec>;
+
+/// Two bodies, each at a pose.
+class Pair {
+ public:
+  Pair(const Parts& parts_a, const PoseNumbers& a, const Parts& parts_b, const PoseNumbers& b) {
+    for (const auto* parts : {&parts_a, &parts_b}) {
+      shapes_.add(draw_outlines(*parts, Draws({}, Stream::shape, 0)), false);
+    }
+    outlines_.resize(shapes_.size[0]);
+    outlines_.place(shapes_, 0, {a[0], a[1], a[2]}, unit(a[2]));
+    outlines_.place(shapes_, 1, {b[0], b[1], b[2]}, unit(b[2]));
   }
-  outlines.resize(shapes.size[0]);
-  outlines.place(shapes, 0, {a[0], a[1], a[2]}, unit(a[2]));
-  outlines.place(shapes, 1, {b[0], b[1], b[2]}, unit(b[2]));
-  return touch(outlines.footprint(shapes, 0), outlines.footprint(shapes, 1));
+
+  Footprint operator[](int body) const { return outlines_.footprint(shapes_, body); }
+
+ private:
+  Shapes shapes_;
+  Outlines outlines_;
+};
+
+bool intersects(const Parts& parts_a, const PoseNumbers& a, const Parts& parts_b, const PoseNumbers& b) {
+  const Pair both(parts_a, a, parts_b, b);
+  return touch(both[0], both[1]);
+}
+
+double distance_between(const Parts& parts_a, const PoseNumbers& a, const Parts& parts_b, const PoseNumbers& b) {
+  const Pair both(parts_a, a, parts_b, b);
+  return distance(both[0], both[1]);
 }
 
 std::tuple<double, double, bool> best_velocity(const std::vector<std::array<double, 4>>& lines, int hard,
@@ -52,6 +71,7 @@ std::vector<int> nearest_points(const std::vector<std::pair<double, double>>& po
 
 void bind_tools(nb::module_& m) {
   m.def("intersects", &intersects, nb::arg("parts_a"), nb::arg("pose_a"), nb::arg("parts_b"), nb::arg("pose_b"));
+  m.def("distance", &distance_between, nb::arg("parts_a"), nb::arg("pose_a"), nb::arg("parts_b"), nb::arg("pose_b"));
   m.def("best_velocity", &best_velocity, nb::arg("planes"), nb::arg("hard"), nb::arg("max_speed"),
         nb::arg("preferred"));
   m.def("nearest_points", &nearest_points, nb::arg("points"), nb::arg("centre"), nb::arg("ahead"), nb::arg("reach"),

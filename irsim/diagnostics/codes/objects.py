@@ -93,7 +93,8 @@ OBJECTS: dict[str, Code] = {
     "initial-overlap": Code(
         "objects start in collision",
         "Two objects, at least one of which can move, overlap at the start. With 'collision_mode: stop' both stay "
-        "where they are. 'deep' is the shortest move that would separate them; the fix names a free place nearby. "
+        "where they are. 'deep' is measured as min_clearance of a run: how far a circle, or the deepest corner of an "
+        "outline, is inside the other. The fix names a free place nearby. "
         "Example: a robot of radius 0.2 at [1, 1] and one at [1.3, 1] are 0.1 m deep in each other. "
         "A start in unknown cells of a map ('unknown: unknown') does not collide, but planners find no way from there.",
     ),

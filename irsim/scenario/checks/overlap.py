@@ -24,8 +24,6 @@ _MAX_COUNTED = 10_000
 """Overlapping pairs of two entries that are counted."""
 _DIRECTIONS = 16
 """Directions in which a free place or a way out is searched."""
-_HALVINGS = 12
-"""Bisections of the depth of an overlap."""
 _RINGS = 30
 """Circles round an object on which a free place is searched."""
 FAR = (-1e8, -1e8, 1e8, 1e8)
@@ -123,30 +121,18 @@ def _count_of_others(count: int) -> str:
 
 
 def _depth_text(a: SizedBody, b: SizedBody) -> str:
-    """Depth of an overlap, in words: the shortest move, in one of a few directions, that separates the two."""
+    """Depth of an overlap, in words, as a run measures it (``min_clearance``)."""
     x, y, heading = a.record.state[:3]
-    most = 2 * (a.shape.reach + min(b.shape.reach, 10 * a.shape.reach))
-    if not math.isfinite(most):
-        return ""
+    depth = -core.distance(a.shape.parts, a.record.state[:3], b.shape.parts, b.record.state[:3])
+    if depth >= _MIN_DEPTH:
+        return f", {metres(depth)} deep"
 
-    def meets(angle: float, far: float) -> bool:
-        pose = (x + far * math.cos(angle), y + far * math.sin(angle), heading)
+    def meets(angle: float) -> bool:
+        pose = (x + _MIN_DEPTH * math.cos(angle), y + _MIN_DEPTH * math.sin(angle), heading)
         return core.intersects(a.shape.parts, pose, b.shape.parts, b.record.state[:3])
 
-    least = most
-    towards = math.atan2(y - b.record.state[1], x - b.record.state[0])
-    for k in range(_DIRECTIONS):
-        angle = towards + 2 * math.pi * k / _DIRECTIONS
-        if meets(angle, least):
-            continue
-        low, high = 0.0, least
-        for _ in range(_HALVINGS):
-            middle = (low + high) / 2
-            low, high = (middle, high) if meets(angle, middle) else (low, middle)
-        least = high
-    if least < _MIN_DEPTH:
-        return ": they touch"
-    return f", {metres(least)} deep" if least < most else ", all of it"
+    crossed = all(meets(2 * math.pi * k / _DIRECTIONS) for k in range(_DIRECTIONS))
+    return "" if crossed else ": they touch"  # of outlines that cross no corner is inside
 
 
 def _free_place(context: Context, mover: SizedBody, bodies: list[SizedBody]) -> tuple[float, float] | None:
