@@ -10,14 +10,15 @@ from __future__ import annotations
 import copy
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
+from irsim.common.arguments import is_number
 from irsim_evals.cases.model import FACTS, Case
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.selection import select
 from irsim_evals.proof.changes import all_free, touches
-from irsim_evals.proof.operators import Change, Data, each_entry, entries, operator
+from irsim_evals.proof.operators import Change, Data, each_entry, entries, operator, sensors_of
 
 __all__ = ["ATTACKS", "EVERYWHERE", "MOTION", "attack", "is_wrong", "together"]
 
@@ -104,12 +105,8 @@ def together(data: Data, change: Callable[[Data], Any], what: str) -> Change:
 def rows_of(value: Any) -> list[list[float]]:
     """The points of a key that holds one point or a list of them; none of anything else."""
     rows = value if isinstance(value, list) and value and isinstance(value[0], list) else [value]
-    fine = all(isinstance(row, list) and len(row) > 1 and all(map(_is_number, row)) for row in rows)
+    fine = all(isinstance(row, list) and len(row) > 1 and all(map(is_number, row)) for row in rows)
     return rows if fine else []
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def _moves(entry: Data) -> bool:
@@ -208,17 +205,13 @@ def route_cut(entry: Data) -> Any:
     return bool(route)
 
 
-def _sensors(entry: Data) -> Iterator[Data]:
-    return (sensor for sensor in entry.get("sensors") or [] if isinstance(sensor, dict))
-
-
 @attack("sees")
 def sensors_turned(data: Data) -> Change:
     """Sensors that look the other way, or stand beside their robot."""
     for what, by in (("looks back", (0.0, 0.0, math.pi)), ("stands 5 m away", (5.0, 0.0, 0.0))):
 
         def change(entry: Data, by: tuple[float, ...] = by) -> Any:
-            seen = [one for one in _sensors(entry) if by[0] or one.get("angle_range", math.pi) < math.tau - 0.1]
+            seen = [one for one in sensors_of(entry) if by[0] or one.get("angle_range", math.pi) < math.tau - 0.1]
             for sensor in seen:
                 sensor["offset"] = [a + b for a, b in zip(sensor.get("offset", [0, 0, 0]), by, strict=True)]
             return bool(seen)
@@ -229,7 +222,7 @@ def sensors_turned(data: Data) -> Change:
 @attack_on_entries("a sensor sees only what is far", "sees", "explores")
 def sensors_blind(entry: Data) -> Any:
     """Sensors that see nothing but what is farthest."""
-    seen = [one for one in _sensors(entry) if _is_number(one.get("range_max"))]
+    seen = [one for one in sensors_of(entry) if is_number(one.get("range_max"))]
     for sensor in seen:
         sensor["range_min"] = 0.95 * sensor["range_max"]
     return bool(seen)

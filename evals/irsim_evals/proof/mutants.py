@@ -18,13 +18,12 @@ from irsim_evals.grader.artefact import Answer, from_folder
 from irsim_evals.grader.matching import matches
 from irsim_evals.grader.material import write_files
 from irsim_evals.proof import attacks, attacks_on_places, mutants_of_entries, mutants_of_values
-from irsim_evals.proof.operators import OPERATORS, Data, Mutant, plain
+from irsim_evals.proof.operators import NUMBER, OPERATORS, Data, Mutant, plain
 
 __all__ = ["attacks_on_answer", "mutants_of", "mutants_of_answer", "mutants_of_text"]
 
 _MODULES = (mutants_of_entries, mutants_of_values, attacks, attacks_on_places)
 """They register their operators when they are imported."""
-_NUMBER = re.compile(r"(?<![\w.#\"'-])(-?\d+(?:\.\d+)?)(?![\w.:\"'])")
 _BOAST = "Done. Everything was built exactly as you asked, and all assertions passed."
 _TAG = "!!python/object/apply:os.getcwd []"
 _EXTRA = {
@@ -52,7 +51,7 @@ def mutants_of_text(text: str) -> Iterator[tuple[str, str, Data]]:
     start = 0
     for k, line in enumerate(text.splitlines(keepends=True)):
         code = line.partition("#")[0]
-        for match in _NUMBER.finditer(code):
+        for match in NUMBER.finditer(code):
             value = float(match[1])
             new = "1" if value == 0 else f"{value * 2:g}"
             changed = text[: start + match.start()] + new + text[start + match.end() :]

@@ -5,10 +5,11 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable
 from functools import partial
+from operator import mul
 from typing import Any
 
 from irsim.options.registry import BEHAVIORS, KINEMATICS, Registry
-from irsim_evals.proof.operators import Change, Data, each_entry, entries, items_of, operator, with_entry
+from irsim_evals.proof.operators import Change, Data, component, each_entry, entries, is_pose, items_of, operator
 
 
 def _built_in(registry: Registry) -> list[str]:
@@ -20,9 +21,9 @@ def _each_key(data: Data, change: Callable[[str, Data], None], what: str) -> Cha
     """A change of each key of each entry."""
     for section, number, entry in entries(data):
         for key in entry:
-            made = with_entry(data, section, number, partial(change, key))
-            if made is not None:
-                yield f"{section}[{number}].{key} {what}", made
+            made = copy.deepcopy(data)
+            change(key, items_of(made, section)[number])
+            yield f"{section}[{number}].{key} {what}", made
 
 
 def _drop(key: str, entry: Data) -> None:
@@ -38,8 +39,7 @@ def world_size(data: Data) -> Change:
     """Width or height doubled, or both swapped."""
     for key in ("width", "height"):
         made = copy.deepcopy(data)
-        if isinstance(made.get("world"), dict) and isinstance(made["world"].get(key), (int, float)):
-            made["world"][key] *= 2
+        if component("world", key, partial(mul, 2))(made):
             yield f"world.{key} doubled", made
     made = copy.deepcopy(data)
     world = made.get("world")
@@ -53,9 +53,7 @@ def map_changed(data: Data) -> Change:
     """A generated map with half of its share occupied, with larger cells, or of another seed."""
     for key, factor in (("fill", 0.5), ("resolution", 2), ("seed", 2)):
         made = copy.deepcopy(data)
-        options = (made.get("world") or {}).get("obstacle_map")
-        if isinstance(options, dict) and isinstance(options.get(key), (int, float)):
-            options[key] *= factor
+        if component("obstacle_map", key, partial(mul, factor))(made.get("world") or {}):
             yield f"world.obstacle_map.{key} x {factor:g}", made
 
 
@@ -189,9 +187,7 @@ def plugged(data: Data) -> Change:
     """A big disc halfway between the start and the goal of a robot."""
     for section, number, entry in entries(data):
         a, b = entry.get("state"), entry.get("goal")
-        if section != "robot" or not (isinstance(a, list) and isinstance(b, list) and len(a) > 1 and len(b) > 1):
-            continue
-        if isinstance(a[0], list) or isinstance(b[0], list):
+        if section != "robot" or not (is_pose(a) and is_pose(b)):
             continue
         made = copy.deepcopy(data)
         disc = {"shape": {"name": "circle", "radius": 1.0}, "state": [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0.0]}

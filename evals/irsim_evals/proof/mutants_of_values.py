@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import math
 from functools import partial
 from operator import add, mul
 from typing import Any
 
-from irsim_evals.proof.operators import Change, Data, component, each_entry, entries, operator, scale, with_entry
-
-
-def _is_pose(value: Any) -> bool:
-    return isinstance(value, list) and len(value) > 1 and isinstance(value[0], (int, float))
+from irsim.common.arguments import is_number
+from irsim_evals.proof.operators import Change, Data, component, each_entry, entries, is_pose, items_of, operator
 
 
 @operator
 def layout_shifted(data: Data) -> Change:
     """All obstacles a metre away, together."""
     fixed = [entry for section, _, entry in entries(data) if section == "obstacle" and "kinematics" not in entry]
-    if len(fixed) < 2 or not all(_is_pose(entry.get("state")) for entry in fixed):
+    if len(fixed) < 2 or not all(is_pose(entry.get("state")) for entry in fixed):
         return
     for axis, by in ((0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)):
         made = copy.deepcopy(data)
@@ -32,32 +30,29 @@ def layout_shifted(data: Data) -> Change:
 @operator
 def moved_along(data: Data) -> Change:
     """Start and goal of one robot moved together, so that its way stays as long as it was."""
-    for section, number, _ in entries(data):
-        for axis, by in ((0, 0.7), (1, 0.7), (0, -0.7), (1, -0.7)):
+    for axis, by in ((0, 0.7), (1, 0.7), (0, -0.7), (1, -0.7)):
 
-            def change(entry: Data, axis: int = axis, by: float = by) -> Any:
-                if not (_is_pose(entry.get("state")) and _is_pose(entry.get("goal"))):
-                    return False
-                entry["state"][axis] += by
-                entry["goal"][axis] += by
-                return True
+        def change(entry: Data, axis: int = axis, by: float = by) -> Any:
+            if not (is_pose(entry.get("state")) and is_pose(entry.get("goal"))):
+                return False
+            entry["state"][axis] += by
+            entry["goal"][axis] += by
+            return True
 
-            made = with_entry(data, section, number, change)
-            if made is not None:
-                yield f"{section}[{number}]: start and goal {'xy'[axis]} {by:+g} m", made
+        yield from each_entry(data, change, f"start and goal {'xy'[axis]} {by:+g} m")
 
 
 @operator
 def turned_about_the_middle(data: Data) -> Change:
     """Start and goal of one robot turned about the middle of all starts, as if a circle were uneven."""
-    movers = [e for *_, e in entries(data) if _is_pose(e.get("state")) and _is_pose(e.get("goal"))]
+    movers = [e for *_, e in entries(data) if is_pose(e.get("state")) and is_pose(e.get("goal"))]
     if len(movers) < 3:
         return
     x, y = (sum(entry["state"][k] for entry in movers) / len(movers) for k in (0, 1))
     c, s = math.cos(0.15), math.sin(0.15)
 
     def change(entry: Data) -> Any:
-        if not (_is_pose(entry.get("state")) and _is_pose(entry.get("goal"))):
+        if not (is_pose(entry.get("state")) and is_pose(entry.get("goal"))):
             return False
         for value in (entry["state"], entry["goal"]):
             dx, dy = value[0] - x, value[1] - y
@@ -71,14 +66,14 @@ def turned_about_the_middle(data: Data) -> Change:
 def on_top(data: Data) -> Change:
     """Something solid on the start of something that moves."""
     solid = [entry for _, _, entry in entries(data) if not entry.get("unobstructed") and entry.get("number", 1) == 1]
-    places = [entry["state"] for entry in solid if "kinematics" in entry and _is_pose(entry.get("state"))]
+    places = [entry["state"] for entry in solid if "kinematics" in entry and is_pose(entry.get("state"))]
     if not places:
         return
 
     def change(entry: Data) -> Any:
         shape = entry.get("shape")
         own = isinstance(shape, dict) and ("vertices" in shape or "center" in shape)
-        if own or entry.get("number", 1) != 1 or not _is_pose(entry.get("state")) or entry.get("unobstructed"):
+        if own or entry.get("number", 1) != 1 or not is_pose(entry.get("state")) or entry.get("unobstructed"):
             return False
         other = next((place for place in places if place != entry["state"]), None)
         if other is None:
@@ -96,7 +91,7 @@ def goal_outside(data: Data) -> Change:
     edge = (world.get("offset") or [0.0, 0.0])[0] + world.get("width", 10) + 0.4
 
     def change(entry: Data) -> Any:
-        if not _is_pose(entry.get("goal")) or "kinematics" not in entry:
+        if not is_pose(entry.get("goal")) or "kinematics" not in entry:
             return False
         entry["goal"][0] = edge
         return True
@@ -110,9 +105,7 @@ def start_and_goal_swapped(data: Data) -> Change:
 
     def change(entry: Data) -> Any:
         a, b = entry.get("state"), entry.get("goal")
-        if not (
-            isinstance(a, list) and isinstance(b, list) and len(a) > 1 and len(b) > 1 and not isinstance(a[0], list)
-        ):
+        if not (is_pose(a) and is_pose(b)):
             return False
         a[0], a[1], b[0], b[1] = b[0], b[1], a[0], a[1]
         return True
@@ -126,8 +119,8 @@ def transposed(data: Data) -> Change:
     for key in ("state", "goal"):
 
         def change(entry: Data, key: str = key) -> Any:
-            value = entry.get(key)
-            if not isinstance(value, list) or len(value) < 2 or isinstance(value[0], list) or value[0] == value[1]:
+            value = entry.get(key, [])
+            if not is_pose(value) or value[0] == value[1]:
                 return False
             value[0], value[1] = value[1], value[0]
             return True
@@ -169,14 +162,14 @@ def size_scaled(data: Data) -> Change:
     """Half or twice the size: a diameter for a radius, a half length for a length."""
     for key in ("radius", "length", "width"):
         for factor in (0.5, 2.0):
-            yield from each_entry(data, scale(key, factor, inside="shape"), f"shape.{key} x {factor:g}")
+            yield from each_entry(data, component("shape", key, partial(mul, factor)), f"shape.{key} x {factor:g}")
 
 
 @operator
 def unit_unconverted(data: Data) -> Change:
     """Centimetres for metres, km/h for m/s."""
     for key in ("radius", "length", "width"):
-        yield from each_entry(data, scale(key, 100.0, inside="shape"), f"shape.{key} in centimetres")
+        yield from each_entry(data, component("shape", key, partial(mul, 100.0)), f"shape.{key} in centimetres")
     yield from each_entry(data, component("vel_max", 0, partial(mul, 3.6)), "speed in km/h")
 
 
@@ -192,18 +185,12 @@ def limits_changed(data: Data) -> Change:
 
 @operator
 def sensor_changed(data: Data) -> Change:
-    """Half or twice a parameter of a sensor, or the sensor left out."""
+    """Half or twice a parameter of a sensor."""
     for section, number, entry in entries(data):
         for k, sensor in enumerate(entry.get("sensors") or []):
-            for key in ("range_max", "number", "angle_range"):
-                for factor in (0.5, 2.0):
-                    if not isinstance(sensor, dict) or not isinstance(sensor.get(key), (int, float)):
-                        continue
-
-                    def change(entry: Data, k: int = k, key: str = key, factor: float = factor) -> Any:
-                        value = entry["sensors"][k][key] * factor
-                        entry["sensors"][k][key] = round(value) if key == "number" else value
-
-                    made = with_entry(data, section, number, change)
-                    if made is not None:
-                        yield f"{section}[{number}].sensors[{k}].{key} x {factor:g}", made
+            for key, factor in itertools.product(("range_max", "number", "angle_range"), (0.5, 2.0)):
+                if isinstance(sensor, dict) and is_number(sensor.get(key)):
+                    made = copy.deepcopy(data)
+                    value = sensor[key] * factor
+                    items_of(made, section)[number]["sensors"][k][key] = round(value) if key == "number" else value
+                    yield f"{section}[{number}].sensors[{k}].{key} x {factor:g}", made

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import copy
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeGuard
 
 import yaml
 
+from irsim.common.arguments import is_number
+from irsim.scenario.model.lookup import at
 from irsim_evals.grader.scene import GradedScene
 
 __all__ = [
-    "OPERATORS", "REWRITES", "Change", "Data", "Mutant", "component", "dump", "each_entry", "entries", "items_of",
-    "operator", "plain", "rewrite", "scale", "with_entry",
+    "NUMBER", "OPERATORS", "REWRITES", "Change", "Data", "Mutant", "component", "dump", "each_entry", "entries",
+    "is_pose", "items_of", "operator", "plain", "rewrite", "sensors_of",
 ]  # fmt: skip
 
 Data = dict[str, Any]
@@ -22,6 +25,8 @@ Operator = Callable[[Data], Change]
 OPERATORS: dict[str, Operator] = {}
 Rewrite = Callable[[str, Data, GradedScene], str | None]
 REWRITES: dict[str, Rewrite] = {}
+NUMBER = re.compile(r"(?<![\w.#\"'-])(-?\d+(?:\.\d+)?)(?![\w.:\"'])")
+"""A number in the text of a scenario."""
 _DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 """The one in C is ten times as fast; some installations lack it."""
 
@@ -69,42 +74,32 @@ def entries(data: Data) -> Iterator[tuple[str, int, Data]]:
                 yield section, number, entry
 
 
-def with_entry(data: Data, section: str, number: int, change: Callable[[Data], Any]) -> Data | None:
-    """A copy in which one entry was changed in place; None if the change does not apply."""
-    made = copy.deepcopy(data)
-    for other, k, entry in entries(made):
-        if (other, k) == (section, number):
-            return made if change(entry) is not False else None
-    return None
+def sensors_of(entry: Data) -> list[Data]:
+    """The sensors of an entry."""
+    return [sensor for sensor in entry.get("sensors") or [] if isinstance(sensor, dict)]
+
+
+def is_pose(value: Any) -> TypeGuard[list[Any]]:
+    """Whether a value is one pose or one point, rather than a list of them."""
+    return isinstance(value, list) and len(value) > 1 and is_number(value[0])
 
 
 def each_entry(data: Data, change: Callable[[Data], Any], what: str) -> Change:
+    """For each entry a copy in which it was changed in place; none where the change returns False."""
     for section, number, _ in entries(data):
-        made = with_entry(data, section, number, change)
-        if made is not None:
+        made = copy.deepcopy(data)
+        if change(items_of(made, section)[number]) is not False:
             yield f"{section}[{number}]: {what}", made
 
 
-def scale(key: str, factor: float, *, inside: str | None = None) -> Callable[[Data], Any]:
-    def change(entry: Data) -> Any:
-        owner = entry.get(inside) if inside else entry
-        if not isinstance(owner, dict) or not isinstance(owner.get(key), (int, float)):
-            return False
-        owner[key] = owner[key] * factor
-        return True
+def component(key: str, part: int | str, new: Callable[[float], float]) -> Callable[[Data], bool]:
+    """A change of one number of the list or the mapping under a key."""
 
-    return change
-
-
-def component(key: str, number: int, new: Callable[[float], float]) -> Callable[[Data], Any]:
-    """A change of one number of a list."""
-
-    def change(entry: Data) -> Any:
-        value = entry.get(key)
-        if not isinstance(value, list) or len(value) <= number or not isinstance(value[number], (int, float)):
-            return False
-        value[number] = new(value[number])
-        return True
+    def change(entry: Data) -> bool:
+        value = at(entry, (key, part))
+        if is_number(value):
+            entry[key][part] = new(value)
+        return is_number(value)
 
     return change
 

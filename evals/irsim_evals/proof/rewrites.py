@@ -12,13 +12,12 @@ import yaml
 from irsim_evals.cases.model import Case
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.proof import rewrites_of_layout  # it registers its rewrites when it is imported
-from irsim_evals.proof.operators import REWRITES, Data, dump, entries, plain, rewrite
+from irsim_evals.proof.operators import NUMBER, REWRITES, Data, dump, entries, plain, rewrite, sensors_of
 
 __all__ = ["rewrites_of", "rewrites_of_edit"]
 
 _MIRRORS = {"mirror_x": rewrites_of_layout.mirrored_left_right, "mirror_y": rewrites_of_layout.mirrored_up_down}
 """Fact of the world that a case leaves free → rewrite."""
-_NUMBER = re.compile(r"(?<![\w.#\"'-])(-?\d+(?:\.\d+)?)(?![\w.:\"'])")
 _KEY = re.compile(r"(?<![\w\"'])([a-z_]+): ")
 
 
@@ -81,7 +80,7 @@ def _numbers(line: str, change: Callable[[str], str]) -> str:
         before = line[: match.start()].rstrip()
         return match[0] if before.endswith(("number:", "group:", "seed:")) else change(match[1])
 
-    return _code(line, lambda code: _NUMBER.sub(one, code))
+    return _code(line, lambda code: NUMBER.sub(one, code))
 
 
 def _keys(line: str, by: str) -> str:
@@ -197,22 +196,16 @@ def entries_renamed(text: str, data: Data, scene: GradedScene) -> str | None:
 @rewrite
 def sections_swapped(text: str, data: Data, scene: GradedScene) -> str | None:
     """Obstacles and robots before the world."""
-    return dump(
-        {
-            key: data[key]
-            for key in sorted(
-                data, key=lambda key: ("obstacle", "robot").index(key) if key in ("obstacle", "robot") else 2
-            )
-        }
-    )
+    first = [section for section in ("obstacle", "robot") if section in data]
+    return dump({key: data[key] for key in (*first, *data)})
 
 
 @rewrite
 def sensor_by_type(text: str, data: Data, scene: GradedScene) -> str | None:
     """``type`` instead of ``name`` for sensors."""
     for *_, entry in entries(data):
-        for sensor in entry.get("sensors") or []:
-            if isinstance(sensor, dict) and "name" in sensor:
+        for sensor in sensors_of(entry):
+            if "name" in sensor:
                 sensor["type"] = sensor.pop("name")
     return dump(data)
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from irsim_evals.grader.scene import GradedScene
-from irsim_evals.proof.operators import Data, dump, entries, rewrite
+from irsim_evals.proof.operators import Data, dump, entries, is_pose, rewrite
 
 
 @rewrite
@@ -42,10 +42,10 @@ def one_entry_each(text: str, data: Data, scene: GradedScene) -> str | None:
 def _rectangles(data: Data, change: Callable[[Data, Data], None]) -> str:
     """Apply a change to each static obstacle with the shape of a rectangle and one pose."""
     for section, _, entry in entries(data):
-        shape, state = entry.get("shape"), entry.get("state")
+        shape = entry.get("shape")
         if section != "obstacle" or "kinematics" in entry or not isinstance(shape, dict) or entry.get("number", 1) != 1:
             continue
-        if shape.get("name") == "rectangle" and isinstance(state, list) and not isinstance(state[0], list):
+        if shape.get("name") == "rectangle" and is_pose(entry.get("state")):
             change(entry, shape)
     return dump(data)
 
@@ -85,9 +85,8 @@ def rectangles_turned(text: str, data: Data, scene: GradedScene) -> str | None:
 def slightly_off(text: str, data: Data, scene: GradedScene) -> str | None:
     """Positions of robots a tenth of a millimetre off."""
     for section, _, entry in entries(data):
-        state = entry.get("state")
-        if section == "robot" and isinstance(state, list) and state and isinstance(state[0], (int, float)):
-            state[0] += 1e-4
+        if section == "robot" and is_pose(entry.get("state")):
+            entry["state"][0] += 1e-4
     return dump(data)
 
 
@@ -122,10 +121,9 @@ def entries_as_groups(text: str, data: Data, scene: GradedScene) -> str | None:
     """Static obstacles that differ only in their pose as one group with a list of poses."""
     groups: dict[str, list[Data]] = {}
     for section, _, entry in entries(data):
-        state = entry.get("state")
         if section != "obstacle" or "kinematics" in entry or "name" in entry or entry.get("number", 1) != 1:
             continue
-        if isinstance(state, list) and state and isinstance(state[0], (int, float)):
+        if is_pose(entry.get("state")):
             rest = {key: value for key, value in entry.items() if key != "state"}
             groups.setdefault(repr(sorted(rest.items())), []).append(entry)
     large = [group for group in groups.values() if len(group) > 1]
