@@ -206,3 +206,44 @@ def test_the_goal_of_a_replay_is_the_end_of_the_recording() -> None:
     material = hall(STANDS, f"name: one, kinematics: {{name: omni}}, {replay}, state: [3, 1, 0]")
     assert seen(material, "each", {"of": "one", "has": {"goal_x": 8, "goals": 1}}).passed
     assert seen(material, "arrive", {"of": "one"}, 6).passed
+
+
+@pytest.mark.parametrize(
+    ("robot", "keys", "passes"),
+    [
+        ("state: [1, 5, 0], goal: [5, 5, 0]", {"standstill": 0}, True),  # it has arrived after 4 s
+        ("state: [1, 5, 0], goal: [5, 5, 0]", {"standstill": {"ge": 1}}, False),
+        ("state: [1, 5, 0], goal: [5, 5, 0], start_time: 3", {"standstill": {"eq": 3, "tol": 0.11}}, True),
+        ("state: [1, 5, 0], goal: [5, 5, 0], start_time: 3", {"since": 1, "standstill": {"eq": 2, "tol": 0.11}}, True),
+        ("state: [1, 5, 0], goal: [5, 5, 0], appear_time: 3", {"standstill": 0}, True),
+        ("state: [1, 5, 0], goal: [9, 5, 0]", {"standstill": 0}, True),
+    ],
+)
+def test_a_standstill_ends_with_the_arrival(robot: str, keys: dict[str, Any], passes: bool) -> None:
+    assert seen(hall(f"{OMNI}, {robot}"), "moves", {"of": "watch", **keys}, 8).passed == passes
+
+
+@pytest.mark.parametrize(
+    ("keys", "passes"),
+    [
+        ({"at": 0, "to": "one", "distance": {"eq": 1.6, "tol": 0.01}}, True),
+        ({"at": 1, "to": "one", "distance": {"eq": 0.6, "tol": 0.01}}, True),
+        ({"at": 1, "to": "one", "distance": {"ge": 1}}, False),
+        ({"at": 1, "to": "all", "distance": {"eq": 0.6, "tol": 0.01}}, True),  # to the nearest of the others
+        ({"at": 1, "to": "two", "distance": {"ge": 0.5}}, False),  # has not come by then
+        ({"at": 1, "to": "two", "distance": {"given": False}}, True),
+        ({"at": 1, "to": "missing", "distance": {"ge": 0}}, False),
+        ({"at": 1, "to": "watch", "distance": {"ge": 0}}, False),  # there is no other body in it
+    ],
+)
+def test_others_are_so_far_away_at_a_time(keys: dict[str, Any], passes: bool) -> None:
+    robot = f"{OMNI}, state: [1, 5, 0], goal: [9, 5, 0]"
+    box = "name: one, shape: {name: rectangle, length: 0.4, width: 2}, state: [3, 5, 0]"
+    material = hall(robot, f"name: two, {OMNI}, state: [1, 8, 0], goal: [9, 8, 0], appear_time: 5", static=box)
+    assert seen(material, "state_at", {"of": "watch", **keys}, 3).passed == passes
+
+
+def test_a_distance_at_a_time_is_to_somebody() -> None:
+    for keys in ({"to": "one"}, {"distance": 1}):
+        with pytest.raises(ValueError, match="give both"):
+            seen(hall(CONE), "state_at", {"of": "watch", "at": 1, **keys}, 1)

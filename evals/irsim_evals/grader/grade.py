@@ -267,7 +267,8 @@ def _guarded(look: Callable[..., Observation]) -> Observation:
     try:
         return look()
     except Exception as error:  # the grader is total: what cannot be observed does not hold
-        seen = str(error).splitlines()[0] if isinstance(error, IrsimError) else f"{type(error).__name__}: {error}"[:300]
+        plain = isinstance(error, IrsimError) or type(error) is LookupError
+        seen = str(error).splitlines()[0] if plain else f"{type(error).__name__}: {error}"[:300]
         return Observation(False, "something that can be observed", seen)
 
 

@@ -79,6 +79,16 @@ class OfBodies(Predicate):
     of: Selection
     """Name of the selection."""
 
+    def bodies(self, material: Material, scene: GradedScene) -> list[GradedBody]:
+        """The bodies of the selection.
+
+        Raises:
+            LookupError: There are none.
+        """
+        if not (bodies := material.bodies(scene, self.of)):
+            raise LookupError(f"{self.of}: no body")
+        return bodies
+
 
 class SeedsPredicate(Predicate):
     """About how worlds differ from seed to seed."""
@@ -127,9 +137,9 @@ def travellers(predicate: OfBodies, material: Material, scene: GradedScene) -> l
     """The bodies of the selection of a predicate.
 
     Raises:
-        LookupError: One of them has no goal.
+        LookupError: There are none, or one of them has no goal.
     """
-    bodies = material.bodies(scene, predicate.of)
+    bodies = predicate.bodies(material, scene)
     for body in bodies:
         if body.goal is None:
             raise LookupError(f"{body.name} has no goal")

@@ -81,12 +81,10 @@ class Each(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Look at each of them."""
-        bodies = material.bodies(scene, self.of)
+        bodies = self.bodies(material, scene)
         words = ", ".join(f"{name} {match.words()}" for name, match in self.has.items())
         least = "each" if self.share == 1 else f"at least {self.share:.0%}"
         expected = f"{self.of}: {least} has {words}"
-        if not bodies:
-            return Observation(False, expected, f"{self.of}: no body")
         wrong: list[tuple[Any, Any]] = []
         where, bad = None, 0
         for body in bodies:
@@ -190,11 +188,9 @@ class Sensor(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Look at the sensors of each body."""
-        bodies = material.bodies(scene, self.of)
+        bodies = self.bodies(material, scene)
         words = ", ".join(f"{name} {match.words()}" for name, match in self.has.items()) or "sensors"
         expected = f"{self.of}: {self.number.words()} with {words}"
-        if not bodies:
-            return Observation(False, expected, f"{self.of}: no body")
         for body in bodies:
             fit = [sensor for sensor in body.sensors if self._fits(sensor)]
             if not matches(self.number, len(fit), "count"):

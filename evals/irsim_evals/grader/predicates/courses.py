@@ -138,12 +138,10 @@ class OneWay(OfBodies, EpisodePredicate):
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Follow every body through the region."""
-        bodies = material.bodies(episode.scene, self.of)
+        bodies = self.bodies(material, episode.scene)
         degrees = math.degrees(self.direction)
         expected = f"{self.of} that pass through {show(list(self.region))} toward {show(degrees)}°: "
         expected += f"{self.number.words()}, none the other way"
-        if not bodies:
-            return Observation(False, expected, f"{self.of}: no body")
         x0, y0, x1, y1 = self.region
         unit = np.array([math.cos(self.direction), math.sin(self.direction)])
         extent = abs(unit[0]) * (x1 - x0) + abs(unit[1]) * (y1 - y0)

@@ -33,10 +33,8 @@ class Collisions(OfBodies, EpisodePredicate):
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Count them."""
-        bodies = material.bodies(episode.scene, self.of)
+        bodies = self.bodies(material, episode.scene)
         expected = f"{self.of} that collide: {self.number.words()}"
-        if not bodies:
-            return Observation(False, expected, f"{self.of}: no body")
         hits = [(body, episode.collisions(body.name)) for body in bodies]
         bad = [(body, contacts[0]) for body, contacts in hits if contacts]
         events = [event for event in episode.events if event.kind == "collision"]
@@ -79,11 +77,17 @@ def closest(episode: GradedEpisode, a: GradedBody, b: GradedBody) -> float:
     far = np.hypot(*np.diff(poses[:, 0] - poses[:, 1], axis=0)[:, :2].T).max(initial=0.0)
     first, second = np.hsplit(dense(poses.reshape(-1, 6), math.ceil(far / _SLIDE)), 2)
     centers = np.hypot(*(first[:, :2] - second[:, :2]).T)
-    if a.radius is not None and b.radius is not None:
-        return float(centers.min()) - a.radius - b.radius
     reach = sum(float(shapely.hausdorff_distance(shapely.Point(c.pose[:2]), c.footprint)) for c in (a, b))
-    near = np.flatnonzero(centers <= centers.min() + reach)
-    return min(float(shapely.distance(_moved(a, first[row]), _moved(b, second[row]))) for row in near.tolist())
+    near = np.flatnonzero(centers <= centers.min() + (0.0 if a.radius and b.radius else reach))
+    return min(edge_to_edge((a, first[row]), (b, second[row])) for row in near.tolist())
+
+
+def edge_to_edge(*placed: tuple[GradedBody, Any]) -> float:
+    """Distance between the footprints of two bodies at their poses [m]; negative where two discs overlap."""
+    (a, first), (b, second) = placed
+    if a.radius is not None and b.radius is not None:
+        return math.dist(first[:2], second[:2]) - a.radius - b.radius
+    return float(shapely.distance(_moved(a, first), _moved(b, second)))
 
 
 def _moved(body: GradedBody, pose: Any) -> Any:

@@ -7,9 +7,12 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+from pydantic import model_validator
 
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
 from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, measured, register, summary
+from irsim_evals.grader.predicates.encounters import edge_to_edge
+from irsim_evals.grader.selection import Selection
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
@@ -18,13 +21,16 @@ if TYPE_CHECKING:
 
 _MOTION: dict[str, Kind] = {
     "farthest": "length", "path": "length", "dx": "length", "dy": "length", "progress": "share", "fastest": "speed",
-    "slowest": "speed", "turn": "rate",
+    "slowest": "speed", "turn": "rate", "standstill": "time",
 }  # fmt: skip
 """Measures of how a body moves."""
 _STATE: dict[str, Kind] = {
     "x": "length", "y": "length", "heading": "heading", "speed": "speed", "turn": "rate", "goal_distance": "length",
+    "distance": "length",
 }  # fmt: skip
 """Measures of where a body is."""
+_STILL = 0.02
+"""Speed [m/s] below which a body stands still."""
 
 
 @register("arrive")
@@ -42,11 +48,9 @@ class Arrive(OfBodies, EpisodePredicate):
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look at the arrivals."""
-        bodies = material.bodies(episode.scene, self.of)
+        bodies = self.bodies(material, episode.scene)
         end = episode.duration if self.within is None else self.within
         expected = f"share of {self.of} that arrive within {show(end)} s: {self.share.words()}"
-        if not bodies:
-            return Observation(False, expected, f"{self.of}: no body")
         arrivals = []
         for body in bodies:
             time = episode.arrival(body.name)
@@ -86,6 +90,10 @@ class Moves(OfBodies, EpisodePredicate):
     """Accepted values of the smallest signed speed along the heading [m/s]; negative in reverse."""
     turn: Match | None = None
     """Accepted values of the greatest turn rate, to either side [rad/s]."""
+    standstill: Match | None = None
+    """Accepted values of the longest time for which it stands still, at less than 2 cm/s, turning or not [s]. A body
+    that has arrived and has no further goal does not stand still from then on, and none does before it has come into
+    the world."""
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Measure the paths."""
@@ -111,7 +119,17 @@ def _motion(episode: GradedEpisode, first: int, body: GradedBody) -> dict[str, f
         "fastest": float(everywhere.max()) if along.size else 0.0,
         "slowest": float(along.min()) if along.size else 0.0,
         "turn": float(np.abs(turn).max(initial=0.0)),
+        "standstill": _standstill(episode, first, body),
     }
+
+
+def _standstill(episode: GradedEpisode, first: int, body: GradedBody) -> float:
+    """The longest time for which a body stands still from a row of the trace on, before it has arrived for good [s]."""
+    arrival = None if body.record.loop or body.record.wander else episode.arrival(body.name)
+    end = len(episode.trace) if arrival is None else int(np.searchsorted(episode.trace.time, arrival + 1e-9))
+    step = np.hypot(*np.diff(episode.positions(body.index)[first:end], axis=0).T)
+    runs = "".join("#" if still else " " for still in step < _STILL * episode.trace.step_time).split()
+    return max(map(len, runs), default=0) * episode.trace.step_time
 
 
 def _progress(body: GradedBody, place: np.ndarray) -> float | None:
@@ -125,8 +143,8 @@ def _progress(body: GradedBody, place: np.ndarray) -> float | None:
 
 @register("state_at")
 class StateAt(OfBodies, EpisodePredicate):
-    """Where every body of a selection is at a time of an episode without noise, and how it moves then. An empty
-    selection fails."""
+    """Where every body of a selection is at a time of an episode without noise, how it moves then, and how far others
+    are from it. An empty selection fails."""
 
     exact = True
 
@@ -145,6 +163,16 @@ class StateAt(OfBodies, EpisodePredicate):
     """Accepted turn rates, positive to the left, measured over the step that ends then [rad/s]."""
     goal_distance: Match | None = None
     """Accepted distances from its last goal [m]."""
+    to: Selection | None = None
+    """Name of the selection for `distance`."""
+    distance: Match | None = None
+    """Accepted distances to the nearest other body of the selection `to` in the world then, edge to edge [m]."""
+
+    @model_validator(mode="after")
+    def _both(self) -> StateAt:
+        if (self.to is None) != (self.distance is None):
+            raise ValueError("give both `to` and `distance`, or neither")
+        return self
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Look at the row of the trace."""
@@ -153,12 +181,18 @@ class StateAt(OfBodies, EpisodePredicate):
             return Observation(False, f"{self.of} at {time:g} s", f"the episode lasts {episode.duration:g} s")
         row = int(np.searchsorted(episode.trace.time, time + 1e-9, side="right")) - 1
         bodies = material.bodies(episode.scene, self.of)
-        return measured(self, f"{self.of} at {time:g} s", bodies, _STATE, partial(_state, episode, row), "behavior")
+        others = material.bodies(episode.scene, self.to) if self.to is not None else []
+        of = f"{self.of} at {time:g} s" + (f" to {self.to}" if self.to is not None else "")
+        return measured(self, of, bodies, _STATE, partial(_state, episode, row, others), "behavior")
 
 
-def _state(episode: GradedEpisode, row: int, body: GradedBody) -> dict[str, float | None]:
-    """Where a body is at a row of the trace, and how it moves."""
-    x, y, heading = episode.trace.pose[row, body.index].tolist()
+def _state(episode: GradedEpisode, row: int, others: list[GradedBody], body: GradedBody) -> dict[str, float | None]:
+    """Where a body is at a row of the trace, how it moves, and how far the nearest other one is."""
+    poses = episode.trace.pose[row]
+    x, y, heading = poses[body.index].tolist()
+    there = [
+        (other, poses[other.index]) for other in others if other is not body and not np.isnan(poses[other.index, 0])
+    ]
     if math.isnan(x):  # not yet in the world
         return dict.fromkeys(_STATE)
     _, speed, turn = episode.velocities(body)
@@ -169,6 +203,7 @@ def _state(episode: GradedEpisode, row: int, body: GradedBody) -> dict[str, floa
         "speed": float(speed[row - 1]) if row and speed[row - 1] == speed[row - 1] else None,
         "turn": float(turn[row - 1]) if row and turn[row - 1] == turn[row - 1] else None,
         "goal_distance": None if body.goal is None else math.dist((x, y), body.goal[:2]),
+        "distance": min((edge_to_edge((body, poses[body.index]), other) for other in there), default=None),
     }
 
 
@@ -183,10 +218,8 @@ class Roams(OfBodies, EpisodePredicate):
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Count positions."""
-        bodies = material.bodies(episode.scene, self.of)
+        bodies = self.bodies(material, episode.scene)
         expected = f"each quadrant holds {self.share:.0%} of the positions of {self.of}"
-        if not bodies:
-            return Observation(False, expected, f"{self.of}: no body")
         x0, y0, x1, y1 = episode.scene.bounds
         half = len(episode.trace) // 2
         points = episode.trace.pose[half:, [body.index for body in bodies], :2].reshape(-1, 2)

@@ -283,11 +283,9 @@ class Facing(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure the angles."""
-        bodies = material.bodies(scene, self.of)
+        bodies = self.bodies(material, scene)
         where = self.toward if isinstance(self.toward, str) else show(list(self.toward))
         expected = f"{self.of} {'away from' if self.away else 'toward'} {where}"
-        if not bodies:
-            return Observation(False, expected, f"{self.of}: no body")
         angles = [(body, self._off(material, scene, body)) for body in bodies]
         wrong = [(body, off) for body, off in angles if off is None or off > self.tol + 1e-9]
         degrees = [(body, None if off is None else f"{math.degrees(off):.0f}° off") for body, off in wrong or angles]
