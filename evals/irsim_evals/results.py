@@ -13,7 +13,7 @@ from irsim.common.text import escape_marks
 from irsim_evals.cases.store import PUBLISHED, Instance, Store, cases_hash
 from irsim_evals.grader.outcome import Record, Verdict
 
-__all__ = ["Results", "Trial", "read_results", "results_of", "trial_of", "write_results"]
+__all__ = ["Results", "Trial", "results_of", "trial_of", "write_results"]
 
 
 class Trial(Record):
@@ -79,14 +79,3 @@ def write_results(results: Results, path: Path) -> None:
     """Write a file of results."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(escape_marks(results.model_dump_json(indent=1)) + "\n", encoding="utf-8")
-
-
-def read_results(path: Path) -> Results:
-    """Read a file of results, or ``results.json`` of a folder.
-
-    Raises:
-        OSError: It cannot be read.
-        pydantic.ValidationError: It is not a file of results.
-    """
-    path = path / "results.json" if path.is_dir() else path
-    return Results.model_validate_json(path.read_text(encoding="utf-8"))

@@ -10,6 +10,7 @@ import sys
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,8 @@ from irsim_evals.cases.store import Instance, case_ids, case_of
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.harness.arms import Side
-from irsim_evals.results import Trial, read_results, trial_of
+from irsim_evals.report.load import load_results
+from irsim_evals.results import Trial, trial_of
 from tests.evals.conftest import EVALS, irsim_evals, refusal
 
 SNAPSHOT: dict[str, dict[str, bool]] = json.loads(
@@ -135,7 +137,7 @@ def test_model_arms_get_the_limits_that_are_given(tmp_path, monkeypatch):
             trial_of(one, grade(one, Answer("a", {}, "?")), arm[0].label, model=options["model"]) for one in instances
         ]
 
-    monkeypatch.setattr("irsim_evals.harness.run.run_arm", run_arm)
+    monkeypatch.setattr(import_module("irsim_evals.cli.run"), "run_arm", run_arm)
     options = ["--model", "anthropic/some", "--epochs", "3", "--token-limit", "9000", "--cost-limit", "0.5"]
     done = irsim_evals("run", "--arm", "skill", "pub-01", *options, "--output", tmp_path / "out", "--json")
     assert done.exit_code == 0, done.output
@@ -151,7 +153,7 @@ def test_trials_are_fresh_instances_and_give_pass_hat_k(tmp_path):
     command = ["run", "--arm", "null", "pub-01", "pub-02", "--trials", "3", "--json", "--output", tmp_path]
     row = json.loads(irsim_evals(*command).stdout)["arms"][0]
     assert (row["trials"], row["attempts"], row["pass_hat_k"]) == (6, 3, 0)
-    trials = read_results(tmp_path).trials
+    trials = load_results(tmp_path).trials
     assert [(trial.number, trial.verdict.instance) for trial in trials] == [(1, ""), (2, "1"), (3, "2")] * 2
 
 

@@ -20,7 +20,7 @@ from irsim_evals.cli.cases import write_case
 from irsim_evals.cli.grade import Changes
 from irsim_evals.grader.artefact import cost_of, from_folder
 from irsim_evals.grader.limited import grade_folder
-from irsim_evals.results import read_results
+from irsim_evals.report.load import load_results
 from tests.evals.conftest import EVALS, RIGHT, failed, irsim_evals, made_up, refusal
 from tests.warm import warm_mcp
 
@@ -222,11 +222,11 @@ def test_verdicts_are_kept_for_the_report(exported: Path, tmp_path: Path) -> Non
     (exported / "pub-01" / "reply.md").write_text("It is scenario.yaml.", encoding="utf-8")
     (exported / "pub-01" / "calls.jsonl").write_text(CALL + "\n", encoding="utf-8")
     assert irsim_evals("grade", exported, "--output", tmp_path / "results.json", "--arm", "me").exit_code == 1
-    first, second = read_results(tmp_path / "results.json").trials
+    first, second = load_results(tmp_path / "results.json").trials
     assert (first.key, first.arm, first.reply) == (("pub-01", ""), "me", "It is scenario.yaml.")
     assert (first.verdict.cost.tokens, second.verdict.strict, second.reply) == (120, False, "")
     irsim_evals("grade", exported / "pub-01", "--output", tmp_path / "results.json")
-    assert [one.arm for one in read_results(tmp_path / "results.json").trials] == [exported.name]
+    assert [one.arm for one in load_results(tmp_path / "results.json").trials] == [exported.name]
 
 
 @pytest.mark.anyio

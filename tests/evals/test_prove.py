@@ -48,8 +48,8 @@ def test_a_trial_that_ran_out_of_time_is_neither_accepted_nor_rejected() -> None
     assert trial.kind == "mutant"
     assert "120 s of processor time" in why
     assert proof.wrong == []
-    assert proof.false_accepts == (0, 0)
-    assert proof.false_rejects[0] == 0
+    assert proof.rates["false accepts"] == (0, 0)
+    assert proof.rates["false rejects"][0] == 0
 
 
 @pytest.mark.usefixtures("slow_mutant")

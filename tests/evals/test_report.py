@@ -20,12 +20,12 @@ from irsim_evals.grader.outcome import NOT_REACHED, Cost, Mark, Outcome
 from irsim_evals.report.content import content_of
 from irsim_evals.report.drawing import draw_answer
 from irsim_evals.report.html_text import code, difference, lines_of, number, prose
-from irsim_evals.report.load import asked_of
+from irsim_evals.report.load import asked_of, load_results
 from irsim_evals.report.marked_picture import marked_picture
 from irsim_evals.report.page import page
 from irsim_evals.report.pictures import Drawn, Job, draw_trials
 from irsim_evals.report.summary import summarize
-from irsim_evals.results import Results, Trial, read_results, results_of, trial_of
+from irsim_evals.results import Results, Trial, results_of, trial_of
 from tests.evals.conftest import file_of, irsim_evals, refusal, trial
 
 HOSTILE = "</pre></script><script>alert(1)</script><img src=x onerror=alert(2)>\u202e\x1b[31m"
@@ -92,7 +92,7 @@ def test_results_json_has_the_names_of_skill_creator(tmp_path: Path) -> None:
 
 def test_a_report_can_be_read_again(tmp_path: Path) -> None:
     folder = written(tmp_path, trial("one", True), trial("two", False))
-    assert read_results(folder) == read_results(tmp_path / "r.json")
+    assert load_results(folder) == load_results(tmp_path / "r.json")
     assert irsim_evals("report", folder, "-o", tmp_path / "again", "--no-pictures").exit_code == 0
 
 

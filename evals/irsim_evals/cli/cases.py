@@ -14,7 +14,7 @@ from irsim.common.text import plural
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.schema import schema_text
 from irsim_evals.cases.store import Instance, write_given
-from irsim_evals.cli.choice import CasesFolder, GoldsFolder, Wanted, chosen, end_with, read_cases, store_of
+from irsim_evals.cli.choice import CasesFolder, Fresh, GoldsFolder, Wanted, chosen, end_with, read_cases, store_of
 from irsim_evals.grader.outcome import name_of
 
 __all__ = ["PROMPT_FILE", "cases", "export", "schema", "write_case"]
@@ -26,7 +26,7 @@ _PATH = Path("schema") / "eval-case.schema.json"
 
 def cases(
     wanted: Wanted = None,
-    fresh: Annotated[int | None, typer.Option(help="Seed of a fresh instance: other numbers, names and words.")] = None,
+    fresh: Fresh = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     cases_folder: CasesFolder = None,
     golds_folder: GoldsFolder = None,
@@ -53,9 +53,7 @@ def cases(
 def export(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to write to; it is made.")],
     wanted: Wanted = None,
-    fresh: Annotated[
-        int | None, typer.Option(min=0, max=10**18 - 1, help="Seed of fresh instances: other numbers, names and words.")
-    ] = None,
+    fresh: Fresh = None,
     cases_folder: CasesFolder = None,
     golds_folder: GoldsFolder = None,
 ) -> None:

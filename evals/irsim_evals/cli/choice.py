@@ -15,7 +15,7 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.reading import CaseError
 from irsim_evals.cases.store import PUBLISHED, Instance, Store, case_files, case_ids, case_of, raw_case, sets_of
 
-__all__ = ["CasesFolder", "GoldsFolder", "Wanted", "chosen", "end_with", "read_cases", "store_of"]
+__all__ = ["CasesFolder", "Fresh", "GoldsFolder", "Wanted", "chosen", "end_with", "read_cases", "store_of"]
 
 CasesFolder = Annotated[
     Path | None,
@@ -28,6 +28,9 @@ GoldsFolder = Annotated[
         help="Folder of right answers, <case>/<answer>/; default: golds beside the folder of cases.",
     ),
 ]  # fmt: skip
+Fresh = Annotated[
+    int | None, typer.Option(min=0, max=10**18 - 1, help="Seed of fresh instances: other numbers, names and words.")
+]
 Wanted = Annotated[list[str] | None, typer.Argument(metavar="[CASE]...", help="Ids, categories or sets; default: all.")]
 
 

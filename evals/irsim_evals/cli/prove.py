@@ -59,15 +59,10 @@ def prove(
         sys.stdout.write(json.dumps(report, ensure_ascii=False) + "\n")
     else:
         _show(proof, seconds, quick)
-    wrong = any(number > _BARS[name] * count for name, (number, count) in _rates(proof).items())
+    wrong = any(number > _BARS[name] * count for name, (number, count) in proof.rates.items())
     if wrong or proof.unjudged or proof.disagreements:
         raise typer.Exit(1)
     end_with(bad)
-
-
-def _rates(proof: Proof) -> dict[str, tuple[int, int]]:
-    """Number of wrong verdicts of each kind, and of the trials that could have had one."""
-    return {name: getattr(proof, name.replace(" ", "_")) for name in _BARS}
 
 
 def _said_of(trial: Trial) -> str:
@@ -91,7 +86,7 @@ def _show(proof: Proof, seconds: float, quick: bool) -> None:
         out.print(f"WRONG {_said_of(trial)}: {told}", soft_wrap=True)
     for trial, why in proof.unjudged:
         out.print(f"NO VERDICT {_said_of(trial)}: {why}", soft_wrap=True)
-    for name, (wrong, count) in _rates(proof).items():
+    for name, (wrong, count) in proof.rates.items():
         out.print(f"{name}: {wrong} of {count}" + (f" ({wrong / count:.2%})" if count else ""))
     for item in proof.disagreements:
         out.print(f"DISAGREE {_words_of(item)}", soft_wrap=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,9 +14,9 @@ from irsim.cli.output import console, progress
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.baselines.arms import BASELINES, run_baseline
-from irsim_evals.cases.store import Instance
-from irsim_evals.cli.choice import CasesFolder, GoldsFolder, Wanted, chosen, end_with, read_cases, store_of
+from irsim_evals.cli.choice import CasesFolder, Fresh, GoldsFolder, Wanted, chosen, end_with, read_cases, store_of
 from irsim_evals.harness.arms import MODEL_ARMS, Side
+from irsim_evals.harness.run import run_arm
 from irsim_evals.report.comparison import compare
 from irsim_evals.results import Trial, results_of, write_results
 from irsim_evals.statistics import mean_pass_hat_k, wilson
@@ -45,7 +45,7 @@ def run(
     instructions: Annotated[
         Path | None, typer.Option(exists=True, dir_okay=False, help="Text that the MCP server says of itself instead.")
     ] = None,
-    fresh: Annotated[int | None, typer.Option(help="Seed of fresh instances: other numbers, names and words.")] = None,
+    fresh: Fresh = None,
     trials: Annotated[
         int, typer.Option(min=1, max=1000, help="Instances of each case: fresh ones with the seeds that follow.")
     ] = 1,
@@ -84,7 +84,7 @@ def run(
     """
     arms = _arms(arm)
     store = store_of(cases_folder, golds_folder)
-    options = {
+    options: dict[str, Any] = {
         "model": model, "epochs": epochs, "token_limit": token_limit, "cost_limit": cost_limit,
         "time_limit": time_limit, "replay": replay, "replay_mode": "grade" if grade_only else "full", "price": price,
         "base_url": base_url, "log_dir": output / "logs", "store": store,
@@ -100,7 +100,7 @@ def run(
             if group[0].arm in BASELINES:
                 done += run_baseline(group[0].arm, instances, report)
             else:
-                done += _run_model(group, instances, options, report)
+                done += run_arm(group, instances, progress=report, **options)
     path = output / "results.json"
     write_results(results_of(done, store), path)
     if verdicts is not None:
@@ -182,14 +182,3 @@ def _sides(arms: list[str], against: str | None, skills: Path | None, instructio
         raise ArgumentError("--against compares one arm with one other", "give --arm once, and one arm to --against")
     sides = [Side(arms[0]), Side(second[0], skills, instructions)]
     return [[side] for side in sides] if any(side.arm in BASELINES for side in sides) else [sides]
-
-
-def _run_model(
-    sides: list[Side], instances: list[Instance], options: dict[str, Any], report: Callable[[int, int], None]
-) -> list[Trial]:
-    if options["model"] is None and options["replay"] is None:
-        why = f"the arm {sides[0].label} needs a model"
-        raise ArgumentError(why, "add --model anthropic/NAME, or --replay RECORDING")
-    from irsim_evals.harness.run import run_arm
-
-    return run_arm(sides, instances, progress=report, **options)

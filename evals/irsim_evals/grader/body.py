@@ -220,20 +220,12 @@ def _box(geometry: Any) -> Box | None:
     if geometry.geom_type not in ("Polygon", "LineString", "LinearRing"):
         return None
     hull = geometry.minimum_rotated_rectangle
-    if hull.geom_type == "LineString":
-        ends = np.asarray(hull.coords)
-        return _oriented(ends[0], ends[1], 0.0, hull.centroid)
-    if hull.geom_type != "Polygon":
+    fits = hull.geom_type == "LineString"
+    if hull.geom_type == geometry.geom_type == "Polygon":
+        fits = shapely.symmetric_difference(hull, geometry).area <= _STRAIGHT * max(1.0, hull.length)
+    if not fits:
         return None
-    hole = shapely.symmetric_difference(hull, geometry) if geometry.geom_type == "Polygon" else None
-    if hole is None or hole.area > _STRAIGHT * max(1.0, hull.length):
-        return None
-    a, b, c = np.asarray(hull.exterior.coords)[:3]
-    long, short = (b - a, c - b) if np.hypot(*(b - a)) >= np.hypot(*(c - b)) else (c - b, b - a)
-    return _oriented(np.zeros(2), long, float(np.hypot(*short)), hull.centroid)
-
-
-def _oriented(start: Any, end: Any, width: float, middle: Any) -> Box:
-    dx, dy = (float(v) for v in end - start)
-    heading = math.atan2(dy, dx) % math.pi
-    return Box(math.hypot(dx, dy), width, heading, (float(middle.x), float(middle.y)))
+    sides = [*np.diff(shapely.get_coordinates(hull)[:3], axis=0), np.zeros(2)]  # of a line only the first has a length
+    long, short = sorted(sides[:2], key=lambda side: -np.hypot(*side))
+    heading = math.atan2(long[1], long[0]) % math.pi
+    return Box(math.hypot(*long), float(np.hypot(*short)), heading, (hull.centroid.x, hull.centroid.y))

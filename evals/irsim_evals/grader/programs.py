@@ -101,24 +101,21 @@ def problems_in(texts: Mapping[str, str | None], given: Mapping[str, str], allow
     return problems
 
 
-def run_program(folder: Path, name: str, seconds: float = SECONDS) -> Printed:
+def rehearse_program(folder: Path, name: str, seconds: float = SECONDS) -> Printed:
+    """Run a program as :func:`run_program` does, but simulate nothing, and find out which episodes it starts."""
+    with tempfile.TemporaryDirectory(prefix="irsim-evals-") as outside:  # where the program may not write
+        return run_program(folder, name, seconds, Path(outside, "episodes.jsonl"))
+
+
+def run_program(folder: Path, name: str, seconds: float = SECONDS, log: Path | None = None) -> Printed:
     """Run a program in a folder, in processes that end with it.
 
     Args:
         folder: Folder with the files of the answer.
         name: Path of the program in it.
         seconds: Processor time after which it is ended [s].
+        log: File for the episodes that it starts, if it is rehearsed.
     """
-    return _run(folder, name, seconds, None)
-
-
-def rehearse_program(folder: Path, name: str, seconds: float = SECONDS) -> Printed:
-    """Run a program as :func:`run_program` does, but simulate nothing, and find out which episodes it starts."""
-    with tempfile.TemporaryDirectory(prefix="irsim-evals-") as outside:  # where the program may not write
-        return _run(folder, name, seconds, Path(outside, "episodes.jsonl"))
-
-
-def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
     command = _command(name, str(seconds), *([str(log)] if log else []))
     environment = {"PATH": os.defpath, "MPLBACKEND": "Agg", "HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     with (folder / ".printed").open("wb") as output:

@@ -13,6 +13,7 @@ import shapely
 import irsim._core as core
 from irsim.common.outline import outline
 from irsim.env import Env
+from irsim.validation.feasibility.clearance_grid import cells_over
 from irsim.validation.feasibility.scenes import FAR
 from irsim_evals.grader.body import GradedBody, body_of
 
@@ -125,23 +126,14 @@ class GradedScene:
         """Whether a disc can get from one place to another inside the world."""
         return self.path_width(start, goal, radius, plugs) >= radius
 
-    def path(self, start: Point, goal: Point, radius: float) -> Any:
-        """(K, 2) a shortest path of a disc; (0, 2) without a path."""
-        clearance, half = self._clearance(radius, ())
-        return np.asarray(clearance.way(start, goal, radius - half))
-
     def _clearance(self, radius: float, plugs: tuple[tuple[float, ...], ...]) -> tuple[core.Clearance, float]:
-        x0, y0, x1, y1 = self.bounds
-        width, height = x1 - x0, y1 - y0
-        size = max(radius / _CELLS_PER_RADIUS, math.sqrt(width * height / _MAX_CELLS), 1e-3)
-        nx, ny = max(1, math.ceil(width / size)), max(1, math.ceil(height / size))
-        key = (nx, ny, plugs)
+        cells = cells_over(self.bounds, max(radius / _CELLS_PER_RADIUS, 1e-3), _MAX_CELLS)
+        key = (cells, plugs)
         if key not in self._paths:
             discs = [([core.Circle(radius=r, center=[0, 0])], [x, y, 0.0]) for x, y, r in plugs]
-            cells = ((x0, y0), (width / nx, height / ny), nx, ny)
             terrain = core.Terrain(FAR, [*self.things, *discs]) if discs else self.terrain
             self._paths[key] = core.Clearance(terrain, cells)
-        return self._paths[key], _HALF_DIAGONAL * max(width / nx, height / ny)
+        return self._paths[key], _HALF_DIAGONAL * max(cells[1])
 
 
 def open_scene(scenario: ResolvedScenario, seed: int) -> GradedScene:

@@ -76,27 +76,23 @@ def _meets(scene: GradedScene, body: GradedBody, selector: Selector, selectors: 
     def belongs(name: str) -> bool:
         return _meets(scene, body, selectors.get(name) or BUILT_IN[name], selectors)
 
-    if selector.role not in (None, body.role):
-        return False
-    if selector.static not in (None, body.static) or selector.passable not in (None, body.passable):
-        return False
-    if selector.kinematics is not None and body.kinematics not in selector.kinematics:
-        return False
-    shapes = {body.shape, *(("rectangle",) if body.shape == "square" else ())}
-    if selector.shape is not None and not shapes & set(selector.shape):
-        return False
-    if selector.named is not None and not _is_named(body, selector.named):
-        return False
-    if selector.inside is not None and not _is_inside(body, selector.inside):
-        return False
-    if selector.among is not None and not all(map(belongs, selector.among)):
-        return False
-    if selector.beyond is not None and any(map(belongs, selector.beyond)):
-        return False
-    for key, match in selector.having.items():
-        if not matches(match, value_of(scene, body, key), PROPERTIES[key].kind):
-            return False
-    return not selector.any_of or any(_meets(scene, body, item, selectors) for item in selector.any_of)
+    def has(key: str, match: Match) -> bool:
+        return matches(match, value_of(scene, body, key), PROPERTIES[key].kind)
+
+    shapes = (body.shape, "rectangle") if body.shape == "square" else (body.shape,)
+    return (
+        selector.role in (None, body.role)
+        and selector.static in (None, body.static)
+        and selector.passable in (None, body.passable)
+        and (selector.kinematics is None or body.kinematics in selector.kinematics)
+        and (selector.shape is None or any(shape in selector.shape for shape in shapes))
+        and (selector.named is None or _is_named(body, selector.named))
+        and (selector.inside is None or _is_inside(body, selector.inside))
+        and all(map(belongs, selector.among or ()))
+        and not any(map(belongs, selector.beyond or ()))
+        and all(has(key, match) for key, match in selector.having.items())
+        and (not selector.any_of or any(_meets(scene, body, item, selectors) for item in selector.any_of))
+    )
 
 
 def _is_named(body: GradedBody, pattern: str) -> bool:

@@ -98,9 +98,10 @@ def run_arm(
         model, base_url, price = recordings[0].header.model, None, None
         epochs = max(len(attempts) for one in recordings for _, attempts in matched(one, instances))
         token_limit = cost_limit = time_limit = message_limit = None
-    _require_harness()
     if model is None:
-        raise ArgumentError(f"the arm {sides[0].label} needs a model", "give one such as anthropic/claude-opus-5")
+        why = f"the arm {sides[0].label} needs a model"
+        raise ArgumentError(why, "add --model anthropic/NAME, or --replay RECORDING")
+    _require_harness()
     if not recordings:
         _require_key(model)
         set_price(model, price, needed=cost_limit is not None)

@@ -22,6 +22,8 @@ _SAME = 1e-6
 """Difference of two numbers that counts as none."""
 _FULL_TURN = 6.2
 """Opening angle [rad] of a sensor from which on it sees all round."""
+_OF_SENSORS = {"sensor_kind": "name", "range": "range_max", "beams": "number", "opening": "angle_range"}
+"""Kind of fact of a sensor → its option."""
 
 
 def changed_facts(before: GradedScene, after: GradedScene) -> set[tuple[str, str]]:
@@ -30,9 +32,8 @@ def changed_facts(before: GradedScene, after: GradedScene) -> set[tuple[str, str
     A body without a counterpart has changed its ``count``; one that is only in the second world has a ``+`` before its
     name.
     """
-    differences = {
-        ("world", kind) for kind in WORLD_FACTS if not _alike(_of_world(before, kind), _of_world(after, kind))
-    }
+    worlds = _facts_of_world(before), _facts_of_world(after)
+    differences = {("world", kind) for kind in WORLD_FACTS if not _alike(worlds[0][kind], worlds[1][kind])}
     pairs = _matched(before.bodies, after.bodies)
     drawn, drawn_after = _drawn(before), _drawn(after)
     for body, other in pairs:
@@ -45,9 +46,8 @@ def changed_facts(before: GradedScene, after: GradedScene) -> set[tuple[str, str
                 differences.add((body.name, "cover"))
             if (body.index in drawn) != (other.index in drawn_after):
                 differences.add((body.name, "random"))
-            differences |= {
-                (body.name, kind) for kind in FACTS[1:-2] if not _alike(_of_body(body, kind), _of_body(other, kind))
-            }
+            own, others = _facts_of_body(body), _facts_of_body(other)
+            differences |= {(body.name, kind) for kind in FACTS[1:-2] if not _alike(own[kind], others[kind])}
     return differences
 
 
@@ -108,56 +108,46 @@ def _matched(first: list[GradedBody], second: list[GradedBody]) -> list[tuple[Gr
     return [*((body, pairs.get(number)) for number, body in enumerate(first)), *((None, other) for other in right)]
 
 
-def _of_world(scene: GradedScene, kind: str) -> Any:
+def _facts_of_world(scene: GradedScene) -> dict[str, Any]:
+    """Kind of fact → what it is in a world."""
     world = scene.world
-    if kind == "size":
-        return [world.width, world.height]
-    if kind == "origin":
-        return list(scene.bounds[:2])
-    if kind == "times":
-        return [world.step_time, world.sample_time, world.time_limit]
-    if kind == "modes":
-        return [world.control_mode, world.collision_mode, world.step_mode, world.boundary]
-    if kind == "fog":
-        return [world.fog_map, world.fog_map_resolution]
-    options = world.obstacle_map
-    return None if options is None else str(options)
+    return {
+        "size": [world.width, world.height],
+        "origin": list(scene.bounds[:2]),
+        "times": [world.step_time, world.sample_time, world.time_limit],
+        "modes": [world.control_mode, world.collision_mode, world.step_mode, world.boundary],
+        "map": None if world.obstacle_map is None else str(world.obstacle_map),
+        "fog": [world.fog_map, world.fog_map_resolution],
+    }
 
 
-def _of_body(body: GradedBody, kind: str) -> Any:
-    if kind == "size":
-        return [body.radius] if body.radius is not None else sorted(body.extent)
-    if kind == "position":
-        return list(body.position)
-    if kind == "heading":
-        return _heading(body)
-    if kind == "goal":
-        return [goal[:2] for goal in body.goals]
-    if kind == "way":
-        return [[goal[0] - body.pose[0], goal[1] - body.pose[1]] for goal in body.goals]
-    if kind == "goal_heading":
-        return [goal[2:3] for goal in body.goals]
-    if kind == "shape":
-        return [body.shape, round(float(shapely.area(body.footprint)) > 0)]
-    if kind == "behavior":
-        return [body.behavior, body.record.wander, body.record.loop]
-    if kind == "driven":
-        return body.behavior is not None
-    if kind in GROUPS["sensors"]:
-        return _of_sensors(body.sensors, kind)
-    if kind == "delays":
-        return [body.record.appear_time, body.record.start_time]
-    if kind == "noise":
-        return [getattr(body.record.kinematics, key, None) for key in ("noise", "alpha")]
-    if kind == "acce":
-        return body.limits["acce"]
-    if kind == "fov":
-        return [None if body.record.fov is None else min(body.record.fov, _FULL_TURN), body.record.fov_radius]
-    if kind == "threshold":
-        return body.record.goal_threshold
-    if kind in ("wheelbase", "tags"):
-        return getattr(body.record, kind)
-    return body.ranges.get(kind) if kind in GROUPS["limits"] else getattr(body, kind)
+def _facts_of_body(body: GradedBody) -> dict[str, Any]:
+    """Kind of fact → what it is for a body, without those that follow from the whole world."""
+    record, sensors = body.record, body.sensors
+    return {
+        **{kind: getattr(body, kind) for kind in ("role", "kinematics", "options", "color", "name", "passable")},
+        "shape": [body.shape, round(float(shapely.area(body.footprint)) > 0)],
+        "size": [body.radius] if body.radius is not None else sorted(body.extent),
+        "position": list(body.position),
+        "heading": _heading(body),
+        "goal": [goal[:2] for goal in body.goals],
+        "goal_heading": [goal[2:3] for goal in body.goals],
+        "way": [[goal[0] - body.pose[0], goal[1] - body.pose[1]] for goal in body.goals],
+        "threshold": record.goal_threshold,
+        "behavior": [body.behavior, record.wander, record.loop],
+        "driven": body.behavior is not None,
+        "delays": [record.appear_time, record.start_time],
+        "noise": [getattr(record.kinematics, key, None) for key in ("noise", "alpha")],
+        "wheelbase": record.wheelbase,
+        **{kind: body.ranges.get(kind) for kind in GROUPS["limits"]},
+        "acce": body.limits["acce"],
+        "fov": [None if record.fov is None else min(record.fov, _FULL_TURN), record.fov_radius],
+        "tags": record.tags,
+        "sensor_count": len(sensors),
+        **{kind: [sensor.get(key) for sensor in sensors] for kind, key in _OF_SENSORS.items()},
+        "opening": [min(float(sensor.get("angle_range") or 0.0), _FULL_TURN) for sensor in sensors],
+        "sensor_options": [{key: sensor[key] for key in sensor.keys() - _OF_SENSORS.values()} for sensor in sensors],
+    }
 
 
 def _heading(body: GradedBody) -> list[float]:
@@ -166,18 +156,6 @@ def _heading(body: GradedBody) -> list[float]:
     if body.static and body.role == "obstacle" and body.box is not None:
         times, heading = (4 if body.shape == "square" else 2), body.box.heading
     return [math.cos(times * heading), math.sin(times * heading)]
-
-
-def _of_sensors(sensors: list[dict[str, Any]], kind: str) -> Any:
-    """A kind of fact of each sensor of a body."""
-    known = {"sensor_kind": "name", "range": "range_max", "beams": "number", "opening": "angle_range"}
-    if kind == "sensor_count":
-        return len(sensors)
-    if kind == "opening":
-        return [min(float(sensor.get("angle_range") or 0.0), _FULL_TURN) for sensor in sensors]
-    if kind in known:
-        return [sensor.get(known[kind]) for sensor in sensors]
-    return [{key: value for key, value in sensor.items() if key not in known.values()} for sensor in sensors]
 
 
 def _alike(a: Any, b: Any) -> bool:

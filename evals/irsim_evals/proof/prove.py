@@ -13,7 +13,7 @@ from irsim_evals.grader.grade import grade
 from irsim_evals.grader.limited import SECONDS, LimitError, run_all
 from irsim_evals.grader.outcome import NOT_REACHED, Verdict
 from irsim_evals.proof.oracle.opinions import opinions
-from irsim_evals.proof.trials import Kind, Trial, kind_of, trials_of
+from irsim_evals.proof.trials import RIGHT, Kind, Trial, kind_of, trials_of
 
 __all__ = ["Disagreement", "Proof", "as_case_rows", "as_rows", "prove", "tried"]
 
@@ -21,6 +21,12 @@ _SECOND_SHARE = 0.25
 """Share of the trials that are also given to the second implementation."""
 _QUICK_SHARE = 0.05
 """Share of rewrites, mutants and null agents that the quick proof tries."""
+_ERRORS: dict[str, tuple[Kind, ...]] = {
+    "false accepts": ("pinned mutant", "broken mutant", "attack", "null"),
+    "false accepts of attacks": ("attack",),
+    "false rejects": RIGHT,
+}
+"""Kind of wrong verdicts → trials that can have one."""
 
 
 @dataclass(frozen=True)
@@ -65,25 +71,14 @@ class Proof:
     compared: Counter[str] = field(default_factory=Counter)
     disagreements: list[Disagreement] = field(default_factory=list)
 
-    def rate(self, *kinds: str) -> tuple[int, int]:
-        """Number of wrong verdicts and of trials of some kinds."""
+    @property
+    def rates(self) -> dict[str, tuple[int, int]]:
+        """Kind of wrong verdicts → their number, and the number of trials that could have had one."""
+        return {name: self._rate(kinds) for name, kinds in _ERRORS.items()}
+
+    def _rate(self, kinds: tuple[Kind, ...]) -> tuple[int, int]:
         count = sum(number for (kind, _), number in self.done.items() if kind in kinds)
         return sum(trial.kind in kinds for trial, _ in self.wrong), count
-
-    @property
-    def false_accepts(self) -> tuple[int, int]:
-        """Wrong answers that were accepted, of all wrong answers."""
-        return self.rate("pinned mutant", "broken mutant", "attack", "null")
-
-    @property
-    def false_accepts_of_attacks(self) -> tuple[int, int]:
-        """Attacks that were accepted, of all attacks."""
-        return self.rate("attack")
-
-    @property
-    def false_rejects(self) -> tuple[int, int]:
-        """Right answers that were rejected, of all right answers."""
-        return self.rate("gold", "rewrite", "free mutant")
 
 
 def prove(

@@ -31,10 +31,12 @@ from irsim_evals.proof.mutants import mutants_of, mutants_of_answer, mutants_of_
 from irsim_evals.proof.operators import Data, dump
 from irsim_evals.proof.rewrites import rewrites_of
 
-__all__ = ["Kind", "Trial", "changes_of", "kind_of", "scene_of", "trials_of"]
+__all__ = ["RIGHT", "Kind", "Trial", "changes_of", "kind_of", "scene_of", "trials_of"]
 
 Kind = Literal["gold", "rewrite", "mutant", "pinned mutant", "broken mutant", "free mutant", "attack", "null"]
 """Kind of a trial. A ``mutant`` is a changed scenario whose world has not been compared with the original one yet."""
+RIGHT: tuple[Kind, ...] = ("gold", "rewrite", "free mutant")
+"""Kinds that the grader must accept; it must reject all others."""
 _NEVER_RIGHT = ("on_top", "goal_outside")
 """Operators whose mutants break what must hold in every scenario."""
 
@@ -66,7 +68,7 @@ class Trial:
     @property
     def right(self) -> bool:
         """Whether the grader must accept it."""
-        return self.kind in ("gold", "rewrite", "free mutant")
+        return self.kind in RIGHT
 
 
 def kind_of(trial: Trial) -> Kind | None:

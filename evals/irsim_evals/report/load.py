@@ -13,13 +13,12 @@ from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.messages.translate import option_message, option_problems
 from irsim_evals.cases.store import PUBLISHED, Instance, Store, all_case_ids, case_of, cases_hash
-from irsim_evals.results import Results, Trial, read_results
+from irsim_evals.proof.trials import RIGHT
+from irsim_evals.results import Results, Trial
 from irsim_evals.statistics import Interval, wilson
 
 __all__ = ["Proof", "ProofRow", "asked_of", "load_proof", "load_results", "merge"]
 
-_RIGHT_KINDS = ("gold", "rewrite", "free mutant")
-"""Kinds of the proof that the grader must accept; it must reject all others."""
 _MAX_MESSAGE = 120
 """Characters of a foreign message that an error repeats."""
 _ADVICE = "write one with irsim-evals grade DIR --output FILE or irsim-evals run"
@@ -55,7 +54,7 @@ class Proof(BaseModel):
         """Wrong answers that were accepted and right ones that were rejected: name, number, share of all of them."""
         errors = []
         for name, right in (("wrong answers accepted", False), ("right answers rejected", True)):
-            rows = [row for row in self.rows if (row.kind in _RIGHT_KINDS) == right]
+            rows = [row for row in self.rows if (row.kind in RIGHT) == right]
             wrong, total = sum(row.wrong for row in rows), sum(row.trials for row in rows)
             errors.append((f"{name}, of {total:,}", wrong, wilson(min(wrong, total), total)))
         return errors
@@ -68,7 +67,8 @@ def load_results(path: Path) -> Results:
         ArgumentError: There is no such file, it holds something else, or it holds no trials.
     """
     try:
-        results = read_results(path)
+        file = path / "results.json" if path.is_dir() else path
+        results = Results.model_validate_json(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise ArgumentError(f"there is no file of results at {path}", _ADVICE) from None
     except (OSError, UnicodeDecodeError) as error:
