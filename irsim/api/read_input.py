@@ -17,7 +17,7 @@ from irsim.scenario.open import read_scenario as read_one
 from irsim.scenario.perturbation import Perturbations, perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["opened_policy", "policy_of_suite", "read_scenario", "rules_of_suite"]
+__all__ = ["in_suite", "opened_policy", "policy_of_suite", "read_scenario", "rules_of_suite"]
 
 
 def read_scenario(
@@ -46,14 +46,14 @@ def read_scenario(
         SuiteError: ``path`` is a suite, or begins with one that has no such scenario.
         Others: as ``irsim.scenario.open.read_scenario``.
     """
-    named = Path(path) if isinstance(path, (str, os.PathLike)) and text is None else None
-    scene = None if named is None or named.is_file() else _suites().suite_scene(named)
+    suited = in_suite(path, text)
+    scene = None if suited is None else _suites().suite_scene(suited)
     try:
         source = path if scene is None else scene.document()
         scenario, diagnostics = read_one(source, text=text, strict=strict, limits=limits, behavior=behavior)
     except ScenarioError:
-        if named is not None and scene is None:
-            _suites().suite_scene(named)  # a suite is refused with a sentence of its own
+        if scene is None and text is None and isinstance(path, (str, os.PathLike)):
+            _suites().suite_scene(Path(path))  # a suite is refused with a sentence of its own
         raise
     given = rules_of_suite(path, text)[0] if perturb is None else perturb
     scenario = perturbed(scenario, read_perturbations(given)) if given else scenario
@@ -70,9 +70,19 @@ def rules_of_suite(path: Any, text: str | None = None) -> tuple[list[str], str]:
     Raises:
         SuiteError: The suite is not valid.
     """
-    if text is not None or not isinstance(path, (str, os.PathLike)) or Path(path).is_file():
-        return [], "done"
-    return _suites().suite_rules(Path(path)) or ([], "done")
+    suited = in_suite(path, text)
+    return ([], "done") if suited is None else _suites().suite_rules(suited) or ([], "done")
+
+
+def in_suite(path: Any, text: str | None = None) -> Path | None:
+    """What may be ``SUITE/SCENARIO``: a path that is no file; None for anything else.
+
+    Args:
+        path: As :func:`irsim.run` takes it.
+        text: The same.
+    """
+    named = isinstance(path, (str, os.PathLike)) and text is None
+    return Path(path) if named and not Path(path).is_file() else None
 
 
 def _suites() -> Any:
@@ -92,9 +102,8 @@ def policy_of_suite(path: str | Path | None, policy: Any) -> Any:
     Raises:
         SuiteError: The suite is not valid.
     """
-    if not isinstance(path, (str, os.PathLike)) or not isinstance(policy, str) or Path(path).is_file():
-        return policy
-    return _suites().suite_policy(path, policy)
+    suited = in_suite(path) if isinstance(policy, str) else None
+    return policy if suited is None else _suites().suite_policy(suited, policy)
 
 
 def opened_policy(

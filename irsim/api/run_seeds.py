@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from irsim.api.read_input import in_suite
 from irsim.api.run_scenario import run
 from irsim.benchmarks.seeds import seeds_from
 from irsim.common.text import plural
@@ -120,7 +121,7 @@ def _findings(
 ) -> list[Finding]:
     """Findings of a check of the scenario; hints of collisions that happened in an episode become warnings."""
     first = episodes[0]
-    if first.policy or first.behavior or (path is not None and not Path(path).is_file()):
+    if first.policy or first.behavior or in_suite(path) is not None:
         return first.warnings  # which consider what drives the robots
     most = limits or DEFAULT_LIMITS
     reading = read(document_of(path, text, limits), strict=strict, limits=most, feasibility=feasibility_findings)

@@ -17,7 +17,7 @@ from typing import Any
 
 from irsim.benchmarks.assumptions import Limit, assumptions_of, limits_of, unequal_note
 from irsim.benchmarks.cluster import run_on_cluster
-from irsim.benchmarks.episode import Job, Task, Until, check_policy, scenario_of
+from irsim.benchmarks.episode import Job, Task, check_policy, scenario_of
 from irsim.benchmarks.log import Log, check_places, logged, with_episodes
 from irsim.benchmarks.policies import (
     chances_that_count,
@@ -41,6 +41,7 @@ from irsim.policies.catalog import PolicySource
 from irsim.policies.policy import Policy
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.results.findings import Finding
+from irsim.results.run import EpisodeUntil
 from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import document_of, import_modules, read_scenario
@@ -85,7 +86,7 @@ def benchmark(
     progress: Progress | None = None,
     log: str | Path | None = None,
     resume: bool = False,
-    until: Until = "done",
+    until: EpisodeUntil = "done",
     groups: Mapping[str, Sequence[str]] | None = None,
     timing: dict[str, Any] | None = None,
 ) -> BenchmarkResult:

@@ -22,6 +22,7 @@ from irsim.navigation.geodesic import Geodesics
 from irsim.policies.driver import PolicyDriver, driver_of
 from irsim.policies.policy import Policy
 from irsim.results.benchmark import CROWDED
+from irsim.results.run import EpisodeUntil
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import Limits
 from irsim.scenario.open import import_modules
@@ -39,7 +40,6 @@ __all__ = [
     "Job",
     "Outcome",
     "Task",
-    "Until",
     "check_policy",
     "crowded",
     "environment_of",
@@ -50,7 +50,6 @@ __all__ = [
 ]
 
 Outcome = Literal["success", "collision", "timeout"]
-Until = Literal["done", "first_collision"]
 _STRIDE = 100
 """Number of steps between two checks whether all humans have arrived."""
 _MAX_FAILURES = 10
@@ -104,7 +103,7 @@ class Job:
     strict: bool
     imports: tuple[str, ...]
     limits: tuple[tuple[str, Any], ...]
-    until: Until = "done"
+    until: EpisodeUntil = "done"
     perturb: tuple[str, ...] = ()
     name: str = ""
     policy: str | None = None

@@ -9,13 +9,13 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from irsim.benchmarks.comparison import DEFAULT_SEEDS
-from irsim.benchmarks.episode import Until
 from irsim.benchmarks.policies import files_of, open_planned
 from irsim.benchmarks.seeds import seeds_from
 from irsim.benchmarks.suite import Protocol, Suite
 from irsim.common.hashing import digest, file_digest
 from irsim.common.installed import version as this_version
 from irsim.policies.policy import Policy
+from irsim.results.run import EpisodeUntil
 from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.scenario.open import document_of, import_modules
 from irsim.scenario.perturbation import perturbation_text, read_perturbations
@@ -88,7 +88,7 @@ class Plan(BaseModel):
     seeds: list[int]
     steps: int | None = None
     perturb: list[str] = []
-    until: Until = "done"
+    until: EpisodeUntil = "done"
     strict: bool = False
     imports: list[str] = []
     reproduce: str = ""

@@ -37,6 +37,7 @@ from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
 from irsim.diagnostics.diagnostic import Path as Path_
 from irsim.diagnostics.errors import CodedError
 from irsim.options.units import MAX_WHOLE, Value
+from irsim.results.run import EpisodeUntil
 from irsim.scenario.file_kind import MOST_PROBLEMS, FileKind, explained
 from irsim.scenario.limits import MAX_STEPS
 from irsim.scenario.perturbation import Perturbation
@@ -156,7 +157,7 @@ class Suite(_Part):
     protocols: Annotated[list[Protocol], Field(min_length=1)] = ["as-written"]
     """Robots that have arrived stand still (``freeze``), stay controlled so that they can make room (``yield``), or do
     what the scenario says (``as-written``). Each protocol is run on its own."""
-    until: Literal["done", "first_collision"] = "done"
+    until: EpisodeUntil = "done"
     """When an episode ends before its horizon: when every robot has arrived or stopped, or already when one collides,
     which fails the episode in both cases."""
     policies: Annotated[dict[Name, str | dict[str, Any]], Field(min_length=1)]

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import yaml
 
-from irsim.benchmarks.episode import Until
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes, short_hash
 from irsim.benchmarks.policies import files_of
 from irsim.benchmarks.suite import SUITES, Protocol, Suite, SuiteError, is_suite, load_suite
 from irsim.benchmarks.suite_scenarios import Expanded, expand
 from irsim.diagnostics.diagnostic import nearest, suggestion
+from irsim.results.run import EpisodeUntil
 from irsim.scenario.behavior_override import behavior_text
 from irsim.scenario.perturbation import perturbation_text, read_perturbations
 
@@ -179,7 +179,7 @@ def suite_policy(name: str | Path, policy: str) -> str:
     return behavior_text(own[policy]) if policy in own else policy
 
 
-def suite_rules(name: str | Path) -> tuple[list[str], Until] | None:
+def suite_rules(name: str | Path) -> tuple[list[str], EpisodeUntil] | None:
     """The rules of a suite for each episode of a scenario of it: perturbations as text, and when an episode ends.
 
     Args:

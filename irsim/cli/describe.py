@@ -11,7 +11,7 @@ from rich.text import Text
 from irsim.cli.options import Json
 from irsim.cli.output import console, print_json
 from irsim.lookup import Answer, Answers, as_brief_text, lookup, lookup_several, topics_of
-from irsim.lookup.answer import facts, said_once
+from irsim.lookup.answer import facts, said_once, title_of
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
@@ -65,7 +65,7 @@ def _show(answer: Answer, out: Console) -> None:
     def line(*parts: RenderableType) -> None:
         out.print(*parts)
 
-    line(Text(answer.title, style="bold"))
+    line(Text(title_of(answer), style="bold"))
     if answer.text:
         line(answer.text)
     if answer.about is not None:

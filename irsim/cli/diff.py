@@ -43,6 +43,9 @@ def diff(
             "key or a comment differs, or if a comment is lost. Repeatable.",
         ),
     ] = None,
+    run: Annotated[
+        bool, typer.Option("--run", help="Also simulate the first steps of both with one seed, and compare them.")
+    ] = False,
     json_output: Json = False,
 ) -> None:
     """List the differences between two scenarios: keys of the files, and properties of the resulting worlds.
@@ -50,7 +53,7 @@ def diff(
     Order of keys, layout and equivalent notations do not count. Entries are matched even if others are added or
     removed.
     """
-    difference = api.diff(before, after, seed=seed)
+    difference = api.diff(before, after, seed=seed, run=run)
     extra = [
         place(change.change, change.path)
         for change in difference.keys
@@ -107,6 +110,10 @@ def _show(difference: ScenarioDiff, extra: list[str]) -> None:
             " ".join(filter(None, (fact.object or "world", fact.key))),
             *rounded_pair(*names_if_different(fact.before, fact.after)),
         )
+    if difference.motion is not None:
+        out.print("in motion", style="bold")
+        for moved in difference.motion or ["no difference"]:
+            out.print(Text(clean(moved, 300)), soft_wrap=True)
     for comment in difference.comments_lost:
         out.print(Text.assemble(("comment lost", "red"), f"  {clean(comment, MAX_VALUE_LENGTH)}"), soft_wrap=True)
     for edited in difference.comments_changed:

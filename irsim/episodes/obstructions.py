@@ -184,10 +184,16 @@ def no_way_message(simulation: Simulation, events: Sequence[Event], name: str) -
 def _no_path_message(simulation: Simulation, name: str) -> str:
     row = next(i for i, record in enumerate(simulation.scenario.objects) if record.name == name)
     record, goal = simulation.scenario.objects[row], simulation.state.goal[row]
-    if not (getattr(record.kinematics, "steered", False) and record.heading_counts(goal.tolist())):
+    if not getattr(record.kinematics, "steered", False):
         return "there is no path to its goal"
     reverse = record.vel_min[0] < 0
-    return "there is no path to its goal with that heading" + ("" if reverse else " without reverse (vel_min)")
+    if record.heading_counts(goal.tolist()):
+        return "there is no path to its goal with that heading" + ("" if reverse else " without reverse (vel_min)")
+    backing = "" if reverse else ", and backs up with vel_min below 0"
+    return (
+        "there is no path to its goal (in tight places a car finds one with arrive_mode: state and the heading in its "
+        f"goal{backing})"
+    )
 
 
 def reactive_behavior(record: ObjectRecord) -> str | None:

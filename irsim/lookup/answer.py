@@ -25,6 +25,7 @@ __all__ = [
     "key_table",
     "plain_table",
     "said_once",
+    "title_of",
 ]
 
 
@@ -77,6 +78,8 @@ class Answer(_Data):
     """Related topics."""
     best: Answer | None = None
     """Of a search: what the first of the topics says."""
+    read_as: str | None = None
+    """The name that this answers: the one nearest to a misspelt word; None if the word is a topic."""
 
 
 class Answers(_Data):
@@ -111,7 +114,7 @@ _MIN_BRIEF_TEXT = 200
 
 def as_text(answer: Answer) -> str:
     """Return an answer as text, without its example: for some topics ``answer.example`` is a command."""
-    lines = [answer.title]
+    lines = [title_of(answer)]
     if answer.text:
         lines.append(answer.text)
     if answer.about is not None:
@@ -132,7 +135,7 @@ def as_brief_text(answer: Answer) -> str:
     Keys that a component has in common with its siblings, and those beyond the first ones, are only named. A list of
     topics is whole, or has only names. Of the first topic that a search finds there is the text; the rest are named.
     """
-    lines = [answer.title]
+    lines = [title_of(answer)]
     if answer.text:
         lines.append(_brief(answer))
     if answer.about is not None:
@@ -156,6 +159,11 @@ def as_brief_text(answer: Answer) -> str:
             f"For example: {answer.example}" if "\n" not in answer.example else f"For example:\n{answer.example}"
         )
     return "\n".join(lines)
+
+
+def title_of(answer: Answer) -> str:
+    """The title of an answer; that of a misspelt question says how it was read."""
+    return answer.title if answer.read_as is None else f"No such topic; nearest: {answer.read_as!r}. {answer.title}"
 
 
 def said_once(topics: Sequence[str], answers: Sequence[Answer | TopicError]) -> list[Answer | TopicError]:

@@ -19,7 +19,7 @@ from irsim.lookup.synonyms import EVERYDAY, named
 from irsim.lookup.things import ALL_GUIDES
 from irsim.options.registry import REGISTRIES
 
-__all__ = ["MAX_HITS", "all_topics", "near_topics", "search_answer"]
+__all__ = ["MAX_HITS", "all_topics", "near_topics", "nearest_name", "search_answer"]
 
 MAX_HITS = 5
 """Topics that a search shows."""
@@ -29,6 +29,8 @@ _MAX_NAMESAKES = 20
 """Keys of one name that are shown."""
 _MIN_LIKENESS = 0.8
 """Similarity (0 to 1) from which on a name is suggested, or ends a search."""
+_MIN_LEAD = 0.03
+"""Similarity by which the nearest name must be nearer than the next."""
 _MAX_CHOICES = 12
 """Number of allowed words up to which they can be searched; longer lists (colours) cannot."""
 
@@ -187,6 +189,17 @@ def near_topics(topics: set[str], words: list[str]) -> list[str]:
             by_last.setdefault(topic.rpartition(".")[2], topic)
         near = [by_last[name] for name in difflib.get_close_matches(words[-1], by_last, 3, 0.75)]
     return near
+
+
+def nearest_name(schema: Node, word: str) -> str | None:
+    """Return the name or everyday word that a misspelt word is clearly nearest to; None if there is none."""
+    words = {word for guide in ALL_GUIDES.values() for word in guide.words}
+    words |= {name for names in EVERYDAY.values() for name in names.split(", ")}
+    names = {name for name in words if name.isalpha()} | {re.split(r"[. ]", name)[-1] for name in all_topics(schema)}
+    near = difflib.get_close_matches(word.lower(), sorted(names), 2, _MIN_LIKENESS)
+    likeness = [difflib.SequenceMatcher(None, name, word.lower()).ratio() for name in near]
+    clear = len(near) == 1 or (len(near) == 2 and likeness[0] - likeness[1] >= _MIN_LEAD)
+    return near[0] if clear else None
 
 
 def all_topics(schema: Node) -> set[str]:

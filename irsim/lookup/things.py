@@ -228,6 +228,7 @@ THINGS: dict[str, Guide] = {
     ),
     "encounter": Guide(
         "who gives way to whom",
+        "Avoidance laws know who is near, also behind a wall. "
         "Sharing: orca for all, sidestep 10 (right; -10 left) for who meets head-on. People make way, the robot does "
         "not: robot dash, people orca with timeHorizon 4 and sidestep 10, started a little off its line. The robot "
         "makes way for people who do not care: robot orca, people dash. No avoidance: dash for all. A first, then B: "

@@ -35,7 +35,7 @@ from irsim.lookup.policies import (
     suites_answer,
 )
 from irsim.lookup.schema_walk import COLOR, Node, component_name, components, definitions_of, key, mappings, paths, step
-from irsim.lookup.search import MAX_HITS, all_topics, near_topics, search_answer
+from irsim.lookup.search import MAX_HITS, all_topics, near_topics, nearest_name, search_answer
 from irsim.lookup.small_examples import BETTER, example_of, small_example
 from irsim.lookup.synonyms import named
 from irsim.lookup.things import ALL_GUIDES, THINGS
@@ -65,6 +65,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     Args:
         topic: A path (``robot.sensors.lidar2d.range_max``), a component (``behavior rvo``, ``rvo``), a kind of
             component (``sensors``), a key, a template, a metric, a code, or a word to search for; empty for an index.
+            A misspelt word gives the answer to the name that is clearly nearest.
         schema: JSON Schema of the language, if the caller has it; making it is most of the work.
 
     Raises:
@@ -125,7 +126,13 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     component = _component_called(topic)
     if component is not None:
         return lookup(component, schema=schema)
-    return search_answer(schema, topic.strip(), words or topic.split(), lambda hit: lookup(hit, schema=schema))
+    try:
+        return search_answer(schema, topic.strip(), words or topic.split(), lambda hit: lookup(hit, schema=schema))
+    except TopicError:
+        nearest = nearest_name(schema, topic.strip()) if len(topic.split()) == 1 else None
+        if nearest is None:
+            raise
+        return lookup(nearest, schema=schema).model_copy(update={"read_as": nearest})
 
 
 def schema_part(topic: str) -> Node:
@@ -311,8 +318,29 @@ MAX_TOPICS = 12
 
 
 def topics_of(text: str) -> list[str]:
-    """Return the topics of a question: the parts between commas, semicolons and line breaks, without empty ones."""
-    return list(dict.fromkeys(part.strip() for part in re.split(r"[,;\n]", text) if part.strip()))
+    """Return the topics of a question: the parts between commas, semicolons and line breaks, without empty ones.
+
+    A part of several names, such as ``crowd lidar2d``, is several topics unless it is one as it stands.
+    """
+    parts = (part.strip() for part in re.split(r"[,;\n]", text))
+    return list(dict.fromkeys(topic for part in parts if part for topic in _names_in(part)))
+
+
+def _names_in(part: str) -> list[str]:
+    """The names of which a part of a question consists; the part itself if it has another word, or is a topic."""
+    words = part.split()
+    written = [word for word in words if not word.isalpha()]  # no words of a sentence
+    if len(words) < 2 or not (written or set(words) <= set(templates.names())):
+        return [part]
+    schema = json_schema()
+    names = all_topics(schema)
+    if not set(words) <= {*names, *(name.rpartition(".")[2] for name in names)}:
+        return [part]
+    try:
+        whole = lookup(part, schema=schema).kind != "search"
+    except TopicError:
+        whole = False
+    return [part] if whole else words
 
 
 def lookup_several(topics: list[str]) -> list[Answer | TopicError]:

@@ -10,7 +10,7 @@ from irsim.common.event_kinds import BETWEEN_STEPS
 from irsim.common.text import clean, listed, plural
 from irsim.results.episode import EventRecord, RobotResult
 
-__all__ = ["ConciseEvent", "ConciseRobot", "ConciseRun", "is_command", "rounded"]
+__all__ = ["ConciseEvent", "ConciseRobot", "ConciseRun", "is_command", "rounded", "shorten_schema"]
 
 _DECIMALS = 3
 """Decimals of numbers: millimetres and milliseconds."""
@@ -27,7 +27,7 @@ class ConciseRobot(BaseModel):
     """One robot; lengths in m, times in s."""
 
     # and the facts of _optional that are defined
-    model_config = ConfigDict(extra="allow", json_schema_extra=lambda schema: _shorten(schema))
+    model_config = ConfigDict(extra="allow", json_schema_extra=lambda schema: shorten_schema(schema))
 
     name: str
     outcome: str
@@ -99,7 +99,7 @@ class ConciseRobot(BaseModel):
 class ConciseEvent(BaseModel):
     """An event of the episode; the partner is the other object, or the zone."""
 
-    model_config = ConfigDict(extra="forbid", json_schema_extra=lambda schema: _shorten(schema))
+    model_config = ConfigDict(extra="forbid", json_schema_extra=lambda schema: shorten_schema(schema))
 
     time: float
     step: int
@@ -162,28 +162,32 @@ class ConciseRun(BaseModel):
 
     def text(self) -> str:
         """The result in words, with everything that the data have."""
+        return "\n".join([*self.lines(), *self.closing_lines()])
+
+    def lines(self) -> list[str]:
+        """The lines of the text about the episode."""
         limit = f"{self.time_limit:g} s ({self.time_limit_from})"
         chance = f"seed {self.seed} (random: {', '.join(self.random)})" if self.random else "nothing is random"
+        return [
+            f"{self.outcome}: {self.summary}",
+            *([] if self.run_id is None else [f"Run: {self.run_id}"]),
+            *([] if self.reason is None else [f"Reason: {self.reason}"]),
+            f"{self.steps} steps, {self.sim_time:g} s of at most {limit}, {chance}",
+            f"Robots ({len(self.robots)} of {self.robot_count}):",
+            *(f"- {robot.text()}" for robot in self.robots),
+            *([f"Events ({len(self.events)} of {self.event_count}):"] if self.events else []),
+            *(f"- {event.text()}" for event in self.events),
+            *(f"Warning: {warning}" for warning in self.warnings),
+        ]
+
+    def closing_lines(self) -> list[str]:
+        """The lines of the text about its record, about running it again, and about what to do next."""
         record = ", ".join((self.artifacts or {"": "none, the workspace cannot be written to"}).values())
-        return "\n".join(
-            [
-                f"{self.outcome}: {self.summary}",
-                *([] if self.run_id is None else [f"Run: {self.run_id}"]),
-                *([] if self.reason is None else [f"Reason: {self.reason}"]),
-                f"{self.steps} steps, {self.sim_time:g} s of at most {limit}, {chance}",
-                f"Robots ({len(self.robots)} of {self.robot_count}):",
-                *(f"- {robot.text()}" for robot in self.robots),
-                *([f"Events ({len(self.events)} of {self.event_count}):"] if self.events else []),
-                *(f"- {event.text()}" for event in self.events),
-                *(f"Warning: {warning}" for warning in self.warnings),
-                f"Record: {record}",
-                *([] if self.reproduce is None else [f"Again: {self.reproduce}"]),
-                f"Next: {self.next}",
-            ]
-        )
+        again = [] if self.reproduce is None else [f"Again: {self.reproduce}"]
+        return [f"Record: {record}", *again, f"Next: {self.next}"]
 
 
-def _shorten(schema: dict[str, Any]) -> None:
+def shorten_schema(schema: dict[str, Any]) -> None:
     """Leave types out of a part of a schema that is read before every session with a model."""
     names = list(schema["properties"])
     schema.clear()

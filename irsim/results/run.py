@@ -17,6 +17,7 @@ __all__ = [
     "LOST_THINGS",
     "MAX_CONCISE",
     "MAX_DETAILED",
+    "EpisodeUntil",
     "HorizonSource",
     "ReplayResult",
     "RunResult",
@@ -27,8 +28,10 @@ __all__ = [
 
 HorizonSource = Literal["argument", "scenario", "default", "limits"]
 """Where the time limit of a run comes from."""
-Until = Literal["done", "time_limit", "first_collision"]
-"""When a run ends: when every robot has arrived or stopped, as in IR-SIM, or at its time limit."""
+EpisodeUntil = Literal["done", "first_collision"]
+"""When an episode of a benchmark ends: when every robot has arrived or stopped, also when a robot collides."""
+Until = Literal[EpisodeUntil, "time_limit"]
+"""When a run ends: as IR-SIM ends it, when every robot has arrived or stopped, or at its time limit, too."""
 MAX_CONCISE = 10
 """Number of robots and events in a concise result."""
 MAX_DETAILED = 50
@@ -182,7 +185,10 @@ class RunResult(Result):
     def _warning_lines(self) -> list[str]:
         """The first warnings about the scenario, and the notes on the recording."""
         warnings = [item for item in self.warnings if item.severity == "warning"]
-        lines = [f"{item.code} at {item.path}: {item.message}" for item in warnings[:MAX_CONCISE]]
+        lines = [
+            f"{item.code} at {item.path}: {item.message}{' (also in base)' * bool(item.in_base)}"
+            for item in warnings[:MAX_CONCISE]
+        ]
         if len(warnings) > MAX_CONCISE:
             lines.append(f"{len(warnings) - MAX_CONCISE} more: validate_scenario lists them")
         return [*lines, *(f"the recording is incomplete: {note}" for note in self.notes)]
@@ -247,6 +253,10 @@ class RunTable(Result):
     """Cursor of the next page; None on the last one."""
     notes: list[str] = Field(default_factory=list)
     """Parts that the record, and so the table, leaves out because there was too much of them."""
+
+    def records(self) -> list[dict[str, Any]]:
+        """The rows by the names of their columns."""
+        return [dict(zip(self.columns, row, strict=True)) for row in self.rows]
 
 
 class ReplayResult(Result):

@@ -113,6 +113,7 @@ def diff(
     before_text: str | None = None,
     after_text: str | None = None,
     seed: int | None = None,
+    run: bool = False,
     limits: Limits | None = None,
 ) -> ScenarioDiff:
     """Compare two scenarios: their files by key, and the worlds built from them by object.
@@ -123,6 +124,7 @@ def diff(
         before_text: Text of the first scenario, instead of ``before``.
         after_text: Text of the second scenario, instead of ``after``.
         seed: Seed with which both worlds are built; default: the scenario's own, else 0.
+        run: Also simulate the first steps of both, and compare what happens: ``motion``.
         limits: Tighter or wider limits of the loader.
 
     Raises:
@@ -131,6 +133,12 @@ def diff(
     """
     most = limits or DEFAULT_LIMITS
     pair = ((before, before_text), (after, after_text))
+    if run:
+        changes = validate(
+            after, text=after_text, base=before, base_text=before_text, simulate=True, seed=seed, limits=limits
+        ).changes
+        assert changes is not None
+        return changes
     a, b = (read(document_of(path, text, limits), strict=True, limits=most) for path, text in pair)
     return compare(a, b, seed=seed)
 

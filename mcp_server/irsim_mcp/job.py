@@ -24,6 +24,7 @@ from irsim_mcp.job_errors import error_data
 if TYPE_CHECKING:
     from irsim.results.picture import SnapshotResult
     from irsim.scenario.limits import Limits
+    from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = ["main"]
 
@@ -119,7 +120,7 @@ def _run_seeds(job: dict[str, Any], progress: _Progress) -> str:
     """Run several episodes, and draw and describe the first that failed, or else the first."""
     from irsim.api import validate
     from irsim.api.run_seeds import run_seeds
-    from irsim.scenario.open import read_scenario
+    from irsim.runs.inspection import inspect_run
     from irsim.validation.scene_table import scene_table
 
     given = {key: job["arguments"].get(key) for key in ("path", "text")}
@@ -129,16 +130,19 @@ def _run_seeds(job: dict[str, Any], progress: _Progress) -> str:
     if base:
         report = validate(**given, **base, strict=True, simulate=True, seed=shown.seed, limits=_limits(job))
         answer["changes"] = None if report.changes is None else report.changes.model_dump(mode="json")
+        old = {(item.code, item.path) for item in report.findings if item.in_base}
+        for item in result.warnings:
+            item.in_base = (item.code, item.path) in old
     if shown.run_id is not None:
         drawn = {"size": _SIZE_PX, "overlays": None, "region": None, "draw": True, "strip": None}
         job["arguments"] = {"run_id": shown.run_id, "steps": shown.decisive_step or shown.steps, **drawn}
-        answer |= json.loads(_run_snapshot(job, _Progress(lambda line: None)))
-        scenario, _ = read_scenario(**given, strict=True, limits=_limits(job))
+        scenario, picture = _draw_run(job, _Progress(lambda line: None))
+        answer |= json.loads(_picture(picture))
         answer["table"] = scene_table(scenario, shown.seed).model_dump(mode="json")
-        if len(shown.robots) + len(answer["scene"]["moving"]) <= _MAX_NEAR:
+        if len(shown.robots) + len(picture.moving) <= _MAX_NEAR:
+            asked = {"robot": "all", "limit": None, "workspace": job["workspace"], "limits": _limits(job)}
             for view in ("closest", *(["zones"] if scenario.world.zones else [])):
-                job["arguments"] = {"run_id": shown.run_id, "view": view, "robot": "all", "limit": None}
-                answer[view] = json.loads(_inspect(job, progress))["rows"]
+                answer[view] = inspect_run(shown.run_id, view=view, **asked).records()
     return f'{json.dumps(answer)[:-1]}, "result": {result.model_dump_json()}}}'
 
 
@@ -157,15 +161,13 @@ def _recorded(work: Callable[..., Any], job: dict[str, Any], progress: _Progress
 
 
 def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim.api.read_input import read_scenario
     from irsim.api.take_snapshot import snapshot_of
     from irsim.episodes.opening import MAX_TRIES
-    from irsim.results.findings import Finding
-    from irsim.scenario.open import read_scenario
-    from irsim.scenario.perturbation import perturbed, read_perturbations
 
     arguments, limits = job["arguments"], _limits(job)
     path, text = arguments.pop("path", None), arguments.pop("text", None)
-    checked, perturbations = "", read_perturbations(arguments.pop("perturb", []))
+    checked, perturb = "", arguments.pop("perturb", [])
     base = {key: arguments.pop(key) for key in ("base", "base_text") if key in arguments}
     if arguments.pop("check"):
         from irsim.api import validate
@@ -180,11 +182,9 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
             other, _ = read_scenario(base.get("base"), text=base.get("base_text"), strict=True, limits=limits)
             changed = dict.fromkeys(item.object for item in report.changes.world if item.object is not None)
             arguments |= {"base": other, "changed": list(changed)}
-    scenario, told = read_scenario(path, text=text, strict=True, limits=limits)
-    scenario = perturbed(scenario, perturbations) if perturbations else scenario
+    scenario, warnings = read_scenario(path, text=text, strict=True, limits=limits, perturb=perturb)
     if arguments["draw"]:
         _load_elsewhere("irsim.rendering.snapshot")
-    warnings = [Finding.of(item) for item in told]
     arguments |= {"warnings": warnings, "strict": True, "limits": limits, "progress": progress}
     result = snapshot_of(scenario, path, tries=range(MAX_TRIES), **arguments)
     if checked:
@@ -212,6 +212,11 @@ def _picture(result: SnapshotResult, checked: str = "") -> str:
 
 
 def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
+    return _picture(_draw_run(job, progress)[1])
+
+
+def _draw_run(job: dict[str, Any], progress: _Progress) -> tuple[ResolvedScenario, SnapshotResult]:
+    """The scenario of a recorded run as it was simulated, and a picture of the run."""
     from irsim.api.film_strip import moments_of
     from irsim.api.take_snapshot import snapshot_of_env
     from irsim.runs import open_run
@@ -231,7 +236,7 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
     )
     if not has_modules(run):
         check_reproduced(run, env)
-    return _picture(result)
+    return env.scenario, result
 
 
 def _inspect(job: dict[str, Any], progress: _Progress) -> str:

@@ -41,7 +41,7 @@ def explanation(topic: str, parameters: dict[str, Any] | None) -> str:
         fix = f"did you mean {' or '.join(error.near)}?" if error.near else "lookup without a topic lists all topics"
         raise RunError("unknown-topic", error.message, fix, where="topic") from None
     if answer.kind == "template":
-        return _template(answer.topic, {})
+        return _template(answer.topic, {}, answer.read_as)
     if answer.kind != "index":
         answer = _with_usable_best(answer)
         return as_text(answer) + (f"\n\nFor example:\n{answer.example}" if answer.example else "")
@@ -99,7 +99,7 @@ def schema_text(section: str) -> str:
     return json.dumps(part, ensure_ascii=False)
 
 
-def _template(name: str, parameters: dict[str, Any]) -> str:
+def _template(name: str, parameters: dict[str, Any], read_as: str | None = None) -> str:
     try:
         template = templates.load(name)
         text = templates.fill(template, parameters)
@@ -107,7 +107,7 @@ def _template(name: str, parameters: dict[str, Any]) -> str:
         where = "topic" if error.code == "unknown-template" else "parameters"
         raise RunError(error.code, error.message, error.fix, where=where) from None
     about = f"{template.purpose} {template.prospect(parameters)}"  # without the path of the picture on this machine
-    answer = look_up(name).model_copy(update={"text": about, "see": []})
+    answer = look_up(name).model_copy(update={"text": about, "see": [], "read_as": read_as})
     given = ", ".join(f"{key}={value}" for key, value in parameters.items()) or "the default parameters"
     return f"{as_text(answer)}\n\nscenario.yaml with {given}:\n```yaml\n{without_modeline(text)}```"
 

@@ -24,7 +24,7 @@ __all__ = ["RecentTexts", "RunId", "ScenarioPath", "ScenarioYaml", "Services", "
 
 
 ScenarioPath = Annotated[str | None, Field(description="Workspace file, or id of a text.")]
-ScenarioYaml = Annotated[str | None, Field(description="Or its YAML text (at most 256 KiB).")]
+ScenarioYaml = Annotated[str | None, Field(description="Or its YAML text.")]
 
 RunId = Annotated[str, Field(max_length=100, description="Of run_episode, or a job_id.")]
 

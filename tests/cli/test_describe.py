@@ -137,14 +137,18 @@ def test_other_words_are_searched_for(irsim: Run) -> None:
         ("robot.sensors.lidar2d.range_maks", "robot.sensors.lidar2d.range_max"),
         ("behavior dahs", "behavior.dash"),
         ("wrld.widht", "world.width"),
-        ("unknwon-kye", "unknown-key"),
-        ("path_iregularity", "path_irregularity"),
     ],
 )
 def test_a_miss_names_what_is_near(irsim: Run, topic: str, near: str) -> None:
     result = irsim("describe", *topic.split(), code=2)
     assert "unknown-topic" in result.stderr
     assert near in result.stderr
+
+
+@pytest.mark.parametrize(("word", "near"), [("unknwon-kye", "unknown-key"), ("path_iregularity", "path_irregularity")])
+def test_a_misspelt_word_is_read_as_the_name_that_is_clearly_nearest(irsim: Run, word: str, near: str) -> None:
+    assert irsim("describe", word, code=0).stdout.startswith(f"No such topic; nearest: '{near}'. ")
+    assert parsed(irsim("describe", word, "--json"))["read_as"] == near
 
 
 def test_json(irsim: Run) -> None:
@@ -263,10 +267,10 @@ def test_several_topics_are_answered_briefly_in_one_call(irsim: Run) -> None:
 
 
 def test_an_unknown_topic_among_others_does_not_stop_the_others(irsim: Run) -> None:
-    result = irsim("describe", "robot.fov, rangemax", "--json")
+    result = irsim("describe", "robot.fov, quux", "--json")
     assert [answer["topic"] for answer in parsed(result)["answers"]] == ["robot.fov"]
-    assert "rangemax" in result.stderr
-    assert irsim("describe", "rangemax, rovo").exit_code == 2
+    assert "quux" in result.stderr
+    assert irsim("describe", "quux, xyzzy").exit_code == 2
 
 
 @pytest.mark.parametrize(

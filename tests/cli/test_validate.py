@@ -120,6 +120,8 @@ def test_diff_lists_changes_and_refuses_those_not_asked_for(irsim: Run, room: Pa
     result = irsim("diff", "room.yaml", "other.yaml", code=0)
     assert "behavior.name" in result.stdout
     assert irsim("diff", "room.yaml", "other.yaml", "--only", "robot[0].behavior").exit_code == 0
+    assert "in motion" not in result.stdout
+    assert "in motion" in irsim("diff", "room.yaml", "other.yaml", "--run", code=0).stdout
     assert irsim("diff", "room.yaml", "other.yaml", "--only", "world").exit_code == 1
     printed = parsed(irsim("diff", "room.yaml", "other.yaml", "--json"))
     assert printed == package.diff("room.yaml", "other.yaml").model_dump(mode="json")

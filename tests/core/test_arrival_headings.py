@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 
 import irsim
+from irsim.bundled import templates
 from irsim.lookup import lookup
 from tests.core.worlds import assert_success
 
@@ -158,6 +160,18 @@ obstacle:
     assert "there is no path to it with that heading without reverse (vel_min)" in result.reason
     assert [event.kind for event in result.events if event.object == "robot_0"] == ["no_path"]
     assert irsim.run(text=text.replace("[0, -0.8]", "[-1.2, -0.8]"), seed=1).outcome == "success"
+
+
+def test_a_car_that_finds_no_path_without_a_heading_is_told_of_it() -> None:
+    park = templates.fill(templates.load("car-park"), {}).replace("{name: dash}", "{name: follow}")
+    text = re.sub(r"waypoints: .*", "goal: [17, 13.5, 1.57]", park).replace("vel_min: [-2.0,", "vel_min: [0,")
+    reason = str(irsim.run(text=text).reason)
+    assert (
+        "there is no path to it (in tight places a car finds one with arrive_mode: state and the heading in" in reason
+    )
+    assert "backs up with vel_min below 0" in reason
+    for cure in (("    goal:", "    arrive_mode: state\n    goal:"), ("vel_min: [0,", "vel_min: [-2,")):
+        assert irsim.run(text=text.replace(*cure)).outcome == "success", cure
 
 
 def test_whoever_turns_at_its_goal_lets_others_pass() -> None:

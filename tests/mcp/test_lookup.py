@@ -11,6 +11,7 @@ from mcp.types import ResourceTemplateReference, TextResourceContents
 
 from irsim import api
 from irsim.bundled import templates
+from irsim.lookup import topics_of
 from irsim.options.registry import REGISTRIES
 from irsim_mcp.reference import explanation
 from tests.mcp.conftest import ERAS, Caller
@@ -58,6 +59,37 @@ def test_topics(topic: str, said: list[str]) -> None:
         assert len(explanation(text.rsplit("such as ", 1)[1], None)) > 50
 
 
+@pytest.mark.parametrize(
+    ("topic", "topics"),
+    [
+        ("corridor-passing guard-patrol", ["corridor-passing", "guard-patrol"]),
+        ("maze queue", ["maze", "queue"]),
+        ("range_max noise, crowd lidar2d", ["range_max", "noise", "crowd", "lidar2d"]),
+        ("behavior footprint_orca", ["behavior footprint_orca"]),  # one topic as it stands
+        ("lidar2d noise", ["lidar2d noise"]),
+        ("circle crossing", ["circle crossing"]),
+        ("guard-patrol with people", ["guard-patrol with people"]),
+    ],
+)
+def test_names_without_commas_are_several_topics(topic: str, topics: list[str]) -> None:
+    assert topics_of(topic) == topics
+
+
+@pytest.mark.parametrize(
+    ("topic", "read_as", "said"),
+    [
+        ("forklfit", "forklift", "2.4 x 1.2 m"),
+        ("pedestiran", "pedestrian", "post, pillar"),
+        ("corridor-pasing", "corridor-passing", "```yaml"),
+        ("elevater, dash", "elevator", "== behavior dash"),
+    ],
+)
+def test_a_misspelt_word_is_answered_at_once(topic: str, read_as: str, said: str) -> None:
+    text = explanation(topic, None)
+    assert f"No such topic; nearest: {read_as!r}. " in text.splitlines()[0]
+    assert said in text
+
+
 def test_several_topics_are_answered_briefly_and_each_thing_once() -> None:
     text = explanation("gps, camera, imu, ice, doorway, corridor-passing, feet, mph, drone, uav", None)
     assert text.count("The world is flat and seen from above") == 1
@@ -94,7 +126,7 @@ async def test_parameters_are_filled_in(client: Caller) -> None:
 @pytest.mark.parametrize(
     ("arguments", "error"),
     [
-        ({"topic": "corridor-pasing"}, "unknown-topic: 'corridor-pasing' is not a topic (topic). Fix: did you mean "),
+        ({"topic": "behavior dahs"}, "unknown-topic: 'behavior dahs' is not a topic (topic). Fix: did you mean "),
         ({"topic": "xyzzy"}, "Fix: lookup without a topic lists all topics."),
         ({"topic": "xyzzy", "parameters": {"a": 1}}, "unknown-template: there is no template 'xyzzy'"),
         ({"topic": "crossing", "parameters": {"beam": 1}}, "(parameters). Fix: did you mean beams?"),

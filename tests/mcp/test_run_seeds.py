@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 import statistics
 from pathlib import Path
 
@@ -172,5 +173,9 @@ async def test_an_edit_is_run_and_compared_with_its_base_in_one_call(client: Cal
     told = await client.text("run_episode", scenario_yaml=CRASH, base=free, seeds=1)
     assert "Next: The edit causes a collision ('rover' hits 'crate' at " in told
     assert "not forbidden other changes" in told
+    blocked = ROOM + "obstacle: [{state: [1.4, 1], shape: {name: circle, radius: 0.2}}]\n"
+    told = await client.text("run_episode", scenario_yaml=blocked.replace("[4, 3, 0]", "[4, 4, 0]"), base=blocked)
+    assert re.search("Warning: initial-overlap at .* deep \\(also in base\\)", told)
+    assert "(also in base)" not in await client.text("run_episode", scenario_yaml=blocked, base=ROOM)
     told = await client.text("run_episode", scenario_yaml=ROOM, base="no: {such")
     assert "the worlds are not compared: one of the scenarios is invalid" in told

@@ -186,3 +186,14 @@ async def test_an_episode_of_a_suite_is_run_and_drawn_as_the_suite_runs_it(clien
     start = irsim.run(name, seed=3, steps=0)
     x, y, _ = start.robots[0].pose
     assert f"'robot_0' (r0) at ({x:.2f}, {y:.2f})" in await client.text("render_snapshot", scenario_path=name, seed=3)
+
+
+async def test_the_table_of_several_episodes_shows_the_starts_that_were_run(client: Caller, workspace: Path) -> None:
+    (workspace / "crossing.yaml").write_text(CROSSING)
+    arguments = {"scenario_path": "crossing.yaml", "seeds": [3], "perturb": "position=0.5"}
+    told = await client.text("run_episode", **arguments)
+    run = re.search(r"^Run: (\S+)$", told, re.MULTILINE)
+    assert run is not None
+    table = await client.data("inspect_run", run_id=run[1], fields=["x", "y"], limit=2)
+    name, x, y = table["rows"][0][2:]
+    assert f"'{name}' (r0) at ({x:.2f}, {y:.2f})" in told or f"'{name}' at ({x:.2f}, {y:.2f})" in told

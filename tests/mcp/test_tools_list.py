@@ -14,7 +14,7 @@ from tests.mcp.golden.write import FILE, listed
 pytestmark = pytest.mark.anyio
 
 NAMES = ["lookup", "validate_scenario", "render_snapshot", "run_episode", "inspect_run", "benchmark", "get_job"]
-MOST_BYTES = 14_000
+MOST_BYTES = 13_800
 
 
 @pytest.mark.parametrize("era", ERAS)

@@ -203,6 +203,7 @@ async def test_after_an_edit_of_comments_nothing_is_asked_again(client: Caller) 
         text = text_of(await client.call(tool, scenario_yaml=after, base=dashing))
         assert "Nothing but comments and layout differs from base, so there is nothing to look at or to run" in text
         assert "comment changed: # the far wall -> # at the far wall" in text
+        assert "; 1 warning, as in base" in text
         for asked in ("Fix:", "Tried:", "run_episode", "hint ", "1. "):
             assert asked not in text.replace("validate_scenario", "")
 

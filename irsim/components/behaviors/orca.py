@@ -29,9 +29,9 @@ class Orca(BehaviorOptions):
 
     name: Literal["orca"] = "orca"
     neighborDist: Annotated[Meters, Field(gt=0)] = 15.0
-    """Moving objects farther away are ignored."""
+    """Moving objects farther away are ignored; walls hide none."""
     maxNeighbors: Count = 10
-    """Number of moving objects considered, nearest first; walls and static circles do not count."""
+    """Moving objects considered, nearest first; walls and static circles do not count."""
     timeHorizon: Annotated[Seconds, Field(gt=0)] = 20.0
     """Time horizon for collisions with moving objects. A long one makes crowds slow."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 10.0

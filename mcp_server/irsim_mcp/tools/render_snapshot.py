@@ -21,7 +21,7 @@ from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, reporter, strict
 from irsim_mcp.tools.validate_scenario import new_collisions, report_of, text_of, trial_has_problems
 
-__all__ = ["PLACE", "tool"]
+__all__ = ["PLACE", "table_lines", "tool"]
 
 PLACE = 3
 
@@ -124,8 +124,6 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
     if answer["scene"] is None:
         report.next = "No picture: fix the errors first; lookup explains a code or a key."
         return text_of(report)
-    labels = {robot["name"]: robot["label"] for robot in answer["scene"]["robots"]}
-    table = scene_lines(answer["table"], labels, answer["scene"]["seed"])
     same = report.changes is not None and answer["report"]["changes"]["same"]
     first = "If the picture is right," if not report.issues else "Fix what is not meant, then"
     hits = new_collisions(answer["report"]["changes"])
@@ -152,7 +150,17 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
         return "\n".join([line, head, *findings, advice])
     if any(answer["scene"]["size"]) and report.changes is not None:
         findings.append("Marked in magenta: what differs from base; dashed: where it was.")
-    return "\n".join([line, head, *findings, *table, advice])
+    return "\n".join([line, head, *findings, *table_lines(answer), advice])
+
+
+def table_lines(answer: dict[str, Any]) -> list[str]:
+    """A line for each entry of a scenario, with the labels and the seed of its picture.
+
+    Args:
+        answer: Answer of a worker with ``table`` and ``scene``.
+    """
+    labels = {robot["name"]: robot["label"] for robot in answer["scene"]["robots"]}
+    return scene_lines(answer["table"], labels, answer["scene"]["seed"])
 
 
 def _line(

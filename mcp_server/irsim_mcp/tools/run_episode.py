@@ -15,12 +15,12 @@ from irsim.diagnostics.errors import InputError
 from irsim.results.concise import ConciseRun
 from irsim.results.episode import EventRecord
 from irsim.results.run import LOST_THINGS, MAX_CONCISE, MAX_DETAILED, RunResult, RunsResult
-from irsim.validation.scene_text import scene_lines
 from irsim_mcp.answers import WorkerResult, failure, json_answer
 from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_RUN_SEEDS, MAX_SEED, MAX_STEPS
 from irsim_mcp.resources import PAGE, uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, reporter, strict
+from irsim_mcp.tools.render_snapshot import table_lines
 from irsim_mcp.tools.validate_scenario import caused, changes_of, new_collisions
 
 __all__ = ["PLACE", "tool"]
@@ -70,7 +70,7 @@ def tool(services: Services) -> StrictTool:
         perturb: Annotated[str | None, Field(max_length=500, description="As in benchmark.")] = None,
         max_steps: Annotated[
             int | None,
-            Field(ge=1, le=MAX_STEPS, description=f"Default: the scenario's time limit, at most {MAX_STEPS:,}."),
+            Field(ge=1, le=MAX_STEPS, description="Default: the scenario's time limit."),
         ] = None,
         until: Annotated[
             Literal["done", "time_limit"], Field(description="time_limit: a robot with loop patrols on.")
@@ -149,7 +149,7 @@ def _of_seeds(data: WorkerResult, services: Services, given: str, form: str) -> 
     """
     whole, new = RunsResult.model_validate(data["result"]), not services.was_done("looked", given)
     shown, detailed = whole.shown, form == "detailed"
-    table = _table(data, shown.seed) if new and data["table"] is not None else []
+    table = table_lines(data) if new and data["table"] is not None else []
     png = data["png"] if new or whole.failed else ""
     if table:
         services.note("looked", given)
@@ -167,11 +167,10 @@ def _of_seeds(data: WorkerResult, services: Services, given: str, form: str) -> 
     lines += table
     picture = f" (the picture shows step {shown.decisive_step or shown.steps})" if png else ""
     if whole.failed or whole.same or picture:
-        said = _whole_text(shown, episode).rpartition("\nRecord: ")
+        full = _whole(shown, episode)
         lines += [f"{'The first that failed, ' * bool(whole.failed and not whole.same)}seed {shown.seed}{picture}:"]
-        lines += [said[0], *_others(shown), *_meetings(data["closest"], shown), *_crossed(data["zones"])]
-        tail = "".join(said[1:]).lstrip()
-        lines.append(tail if artifacts is None else tail.partition("\n")[2])
+        lines += [*full.lines(), *_others(shown), *_meetings(data["closest"], shown), *_crossed(data["zones"])]
+        lines += full.closing_lines()[0 if artifacts is None else 1 :]
     else:
         lines += [*(f"Warning: {warning}" for warning in episode.warnings), f"Next: {advice}"]
     content: list[TextContent | ImageContent] = [TextContent(type="text", text="\n".join(lines))]
@@ -184,12 +183,6 @@ def _of_seeds(data: WorkerResult, services: Services, given: str, form: str) -> 
     return CallToolResult(content=[*content], structured_content=episode.model_dump(exclude_none=True))
 
 
-def _table(data: WorkerResult, seed: int) -> list[str]:
-    """A line for each entry of the scenario."""
-    labels = {robot["name"]: robot["label"] for robot in data["scene"]["robots"]}
-    return scene_lines(data["table"], labels, seed)
-
-
 def _others(shown: RunResult) -> list[str]:
     """A line about when obstacles arrived."""
     robots = {robot.name for robot in shown.robots}
@@ -198,23 +191,24 @@ def _others(shown: RunResult) -> list[str]:
     return [f"Obstacles at their last goals: {listed(when, MAX_CONCISE)}"] if when else []
 
 
-def _crossed(zones: list[list[Any]]) -> list[str]:
+def _crossed(zones: list[dict[str, Any]]) -> list[str]:
     """A line for each zone: who was there from when to when, or crossed it when."""
     rows: dict[str, list[str]] = {}
-    for zone, name, _, _, time, _, duration, *_ in zones:
-        until = "" if duration is None else f" to {time + duration:g}"
-        rows.setdefault(zone, []).append(f"{clean(name)!r} {time:g}{until} s")
+    for row in zones:
+        until = "" if row["duration"] is None else f" to {row['time'] + row['duration']:g}"
+        rows.setdefault(row["zone"], []).append(f"{clean(row['object'])!r} {row['time']:g}{until} s")
     return [f"Zone {clean(zone)!r}: {listed(some, MAX_CONCISE)}" for zone, some in rows.items()][:MAX_CONCISE]
 
 
-def _meetings(closest: list[list[Any]], shown: RunResult) -> list[str]:
+def _meetings(closest: list[dict[str, Any]], shown: RunResult) -> list[str]:
     """A line about how near the objects that move came to one another, without what the lines of the robots say."""
     said = {(robot.name, robot.nearest) for robot in shown.robots}
     met: dict[frozenset[str], str] = {}
-    for name, distance, other, kind, _, time, *_ in closest:
-        pair = frozenset((name, other))
-        if kind != "static" and not said & {(name, other), (other, name)}:
-            met.setdefault(pair, f"{clean(name)!r} and {clean(other)!r} {distance:g} m at {time:g} s")
+    for row in closest:
+        name, other = row["robot"], row["to"]
+        if row["kind"] != "static" and not said & {(name, other), (other, name)}:
+            place = f"{row['edge_distance']:g} m at {row['time']:g} s"
+            met.setdefault(frozenset((name, other)), f"{clean(name)!r} and {clean(other)!r} {place}")
     return [f"Closest to one another: {'; '.join([*met.values()][:_MAX_MET])}"] if met else []
 
 
@@ -254,7 +248,7 @@ def _ending(brief: dict[str, Any]) -> str:
     return " at {:g} s".format(brief["sim_time"]) + (f" ({brief['run_id']})" if "run_id" in brief else "")
 
 
-def _whole_text(shown: RunResult, episode: ConciseRun) -> str:
+def _whole(shown: RunResult, episode: ConciseRun) -> ConciseRun:
     """An episode in full, but no reason that its summary has, and only the events of robots if there are any.
 
     Of a success it has no event that other lines tell: arrivals, waypoints, and who was in which zone.
@@ -265,7 +259,7 @@ def _whole_text(shown: RunResult, episode: ConciseRun) -> str:
         about = [event for event in about if event.kind.partition(" ")[0] not in _TOLD]
     reason = None if episode.reason and episode.reason in shown.summary else episode.reason
     changes = {"summary": clean(shown.summary, 400), "reason": reason, "events": about}
-    return episode.model_copy(update=changes).text()
+    return episode.model_copy(update=changes)
 
 
 def _found(whole: RunsResult) -> str:

@@ -10,6 +10,7 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean, names_if_different, plural, rounded_pair, seconds, shorten_pair
+from irsim.results.concise import shorten_schema
 from irsim.validation.diff.keys import place
 from irsim_mcp.answers import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
@@ -20,11 +21,11 @@ __all__ = ["PLACE", "Report", "new_collisions", "report_of", "text_of", "tool", 
 PLACE = 2
 
 _DESCRIPTION = """
-    Check a scenario and try it, without a picture (render_snapshot checks, too). Returns all problems at once (an
-    invalid scenario is a normal result, valid=false), each with code, path, line, cause and fix. Errors must be fixed;
-    with warnings it may misbehave. not-yet-simulated: tell the user that this version cannot do it. Tried: robots that
-    arrived, collided, got stuck or left the world in the first steps. With base (the scenario before an edit) changes
-    lists what differs, by key, in the world and in motion (same seed). Next: fix, then run_episode.
+    Check a scenario and try it, without a picture (render_snapshot checks, too). Returns all problems at once, with
+    causes and fixes (an invalid scenario is a normal result, valid=false). Errors must be fixed; with warnings it may
+    misbehave. not-yet-simulated: tell the user that this version cannot do it. Tried: robots that arrived, collided,
+    got stuck or left the world in the first steps. With base, changes lists what differs, by key, in the world and in
+    motion (same seed). Next: fix, then run_episode.
 """
 
 
@@ -42,7 +43,7 @@ _MAX_ALLOWED_LENGTH = 800
 class Issue(BaseModel):
     """One problem of a scenario."""
 
-    model_config = ConfigDict(extra="forbid", json_schema_extra=lambda schema: schema.pop("description"))
+    model_config = ConfigDict(extra="forbid", json_schema_extra=shorten_schema)
 
     code: str
     severity: Literal["error", "warning", "hint"]
@@ -77,7 +78,7 @@ def tool(services: Services) -> StrictTool:
     async def validate_scenario(
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
-        base: Annotated[str | None, Field(description="Scenario to compare with: path or YAML text.")] = None,
+        base: Annotated[str | None, Field(description="Scenario before an edit: path or YAML text.")] = None,
         simulate: Annotated[bool, Field(description="Try it, if valid.")] = True,
         max_issues: Annotated[int, Field(ge=1, le=100)] = 20,
         response_format: Annotated[
@@ -141,9 +142,10 @@ def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: 
     few = data["valid"] and data["hints"] <= _MAX_SHOWN_HINTS
     findings = [item for item in data["findings"] if detailed or few or item["severity"] != "hint"]
     same = data["valid"] and data["changes"] is not None and data["changes"]["same"]
+    summary = data["summary"] if data["valid"] else f"invalid: {data['summary']}"
     if same and not detailed:
         findings = []
-    summary = data["summary"] if data["valid"] else f"invalid: {data['summary']}"
+        summary += ", as in base" * bool(data["warnings"])
     if data["hints"] and not detailed:
         codes = dict.fromkeys(item["code"] for item in data["findings"] if item["severity"] == "hint")
         named = ", ".join(list(codes)[:_MAX_HINT_CODES])
