@@ -167,3 +167,85 @@ def test_a_line_is_crossed_in_a_direction(robots: list[str], keys: dict[str, Any
 def test_a_crossing_needs_one_line_and_a_number(keys: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match=r"give either|say how many"):
         registered()["crosses"].model_validate({"of": "robots", **keys})
+
+
+def among(robot: str, *places: tuple[float, float]) -> Material:
+    """A robot in a hall with people who stand."""
+    shape = "shape: {name: circle, radius: 0.3}"
+    people = [f"{{name: person-{k}, {shape}, state: [{x}, {y}, 0]}}" for k, (x, y) in enumerate(places)]
+    text = f"world: {{width: 10, height: 10}}\nrobot: [{robot}]\nobstacle: [{', '.join(people)}]\n"
+    return world(text, missing={"named": "missing"}, persons={"named": "person"})
+
+
+@pytest.mark.parametrize(
+    ("places", "hull", "distance"),
+    [
+        ([(5, 3), (5, 7)], False, 1.5),  # it goes through the middle
+        ([(5, 3), (5, 7)], True, 0),
+        ([(5, 3), (5, 4), (6, 3.5)], False, 0.5),  # it goes past all of them
+        ([(5, 3), (5, 4), (6, 3.5)], True, 0.5),
+        ([(4, 6.5), (6, 6.5)], True, 1),
+    ],
+)
+def test_who_goes_round_a_group_stays_out_of_its_hull(places: Any, hull: bool, distance: float) -> None:
+    keys = {"of": "robots", "to": "persons", "hull": hull, "distance": {"eq": distance, "tol": 0.02}}
+    assert seen(among(EAST, *places), "separation", keys, 12).passed
+    keys["distance"] = {"ge": distance + 0.1}
+    assert not seen(among(EAST, *places), "separation", keys, 12).passed
+    keys["to"] = "missing"
+    assert not seen(among(EAST, *places), "separation", keys, 12).passed
+
+
+def test_a_hull_is_that_of_the_moment() -> None:
+    walkers = [f"{{name: person-{x}, {DRIVE}, state: [{x}, 9, 0], goal: [{x}, 1, 0]}}" for x in (4, 7)]
+    late = f"{{name: person-late, {DRIVE}, state: [1, 5.9, 0], appear_time: 30}}"
+    material = world(
+        f"world: {{width: 10, height: 10}}\nrobot: [{EAST}]\nobstacle: [{', '.join([*walkers, late])}]\n",
+        persons={"named": "person"},
+    )
+    keys = {"of": "robots", "to": "persons", "hull": True}  # after 4 s all of them are at y = 5
+    assert seen(material, "separation", {**keys, "distance": 0}, 5).passed
+    assert seen(material, "separation", {**keys, "distance": {"eq": 1.84, "tol": 0.02}}, 2).passed
+
+
+POSTS = [(3, 5), (5, 5), (7, 5)]
+
+
+@pytest.mark.parametrize(
+    ("way", "posts", "sides"),
+    [
+        ([(3, 6), (5, 4), (7, 6), (9, 5)], POSTS, {"alternating"}),
+        ([(3, 6), (5, 6), (7, 6), (9, 5)], POSTS, {"right", "same"}),
+        ([(3, 4), (5, 4), (7, 4), (9, 5)], POSTS, {"left", "same"}),
+        ([(3, 4), (5, 4), (7, 6), (9, 5)], POSTS, set()),  # the first two on the same side, the third on the other
+        ([(3, 6), (5, 4), (6.2, 5)], POSTS, set()),  # ends before the last one
+        ([(3, 6), (9, 6), (9, 2), (1, 2)], POSTS, {"right", "same"}),  # and once more from farther away
+        ([(3, 6), (9, 6)], [(3, 5)], {"right", "same"}),  # a single one does not alternate
+        ([(9, 5)], [(0.4, 5)], set()),  # behind it from the start
+        ([(9, 5)], [], set()),
+    ],
+)
+def test_a_body_passes_others_on_one_side(way: Any, posts: Any, sides: set[str]) -> None:
+    robot = f"{{{DRIVE}, state: [1, 5, 0], waypoints: {[list(point) for point in way]}}}"
+    observed = {
+        side: seen(among(robot, *posts), "passes", {"of": "robots", "by": "persons", "side": side}, 22)
+        for side in ("left", "right", "same", "alternating")
+    }
+    assert {side for side, observation in observed.items() if observation.passed} == sides, observed["left"].observed
+
+
+@pytest.mark.parametrize(("x", "passes"), [(5, True), (12, False)])
+def test_a_wall_is_passed_at_its_end(x: float, passes: bool) -> None:
+    wall = f"{{name: wall, shape: {{name: linestring, vertices: [[{x}, 0], [{x}, 4.5]]}}, state: [0, 0, 0]}}"
+    keys = {"of": "robots", "by": "statics", "side": "right"}
+    text = f"world: {{width: 15, height: 10}}\nrobot: [{EAST}]\nobstacle: [{wall}]\n"
+    assert seen(world(text), "passes", keys, 12).passed == passes
+
+
+def test_who_comes_the_other_way_is_passed() -> None:
+    oncoming = f"{{name: person, {DRIVE}, state: [9, 5.8, 0], goal: [1, 5.8, 0]}}"
+    material = world(f"world: {{width: 10, height: 10}}\nrobot: [{EAST}]\nobstacle: [{oncoming}]\n")
+    assert seen(material, "passes", {"of": "robots", "by": "obstacles", "side": "left"}, 12).passed
+    assert seen(material, "passes", {"of": "obstacles", "by": "robots", "side": "left"}, 12).passed
+    assert not seen(material, "passes", {"of": "robots", "by": "obstacles", "side": "right"}, 12).passed
+    assert not seen(material, "passes", {"of": "solids", "by": "robots", "side": "left"}, 12).passed

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import shapely
-import shapely.affinity
 
 from irsim_evals.grader.episode import dense
 from irsim_evals.grader.matching import Match, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, register, summary
+from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, judged, register, summary
 from irsim_evals.grader.selection import Selection
 
 if TYPE_CHECKING:
@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 _SLIDE = 0.02
 """Distance [m] that two bodies move relative to each other between two looks at how near they are."""
+_STRIDE = np.array([-0.1, 0.1])
+"""The part of a path before and behind a place that tells the direction of motion there [m]."""
+_ROWS = 500
+"""Rows of poses whose hulls are made at once."""
 
 
 @register("collisions")
@@ -54,32 +58,100 @@ class Separation(EpisodePredicate):
     """Name of the second selection."""
     distance: Match
     """Accepted values of the smallest distance [m]."""
+    hull: bool = False
+    """Measure to the convex hull of the footprints of the whole second selection, as it stands at the time, instead of
+    to each of its bodies: 0 for who goes in between them."""
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Measure at every step."""
         first, second = material.bodies(episode.scene, self.of), material.bodies(episode.scene, self.to)
-        expected = f"smallest distance of {self.of} to {self.to}: {self.distance.words()} m"
-        pairs = [(a, b) for a in first for b in second if a is not b]
+        expected = f"smallest distance of {self.of} to {'the hull of ' * self.hull}{self.to}: {self.distance.words()} m"
+        others = [(a, [b for b in second if b is not a]) for a in first]
+        pairs = [(a, group) for a, rest in others for group in ([rest] if self.hull else [[b] for b in rest]) if group]
         if not pairs:
             return Observation(False, expected, "no pair of bodies")
-        least, a, b = min(((closest(episode, a, b), a, b) for a, b in pairs), key=lambda entry: entry[0])
-        seen = f"{a.name} and {b.name}: {show(least)} m"
+        distances = ((to_hull if self.hull else closest)(episode, *pair) for pair in pairs)
+        least, (a, group) = min(zip(distances, pairs, strict=True), key=lambda entry: entry[0])
+        seen = f"{a.name} and {', '.join(b.name for b in group)}: {show(least)} m"
         return Observation(matches(self.distance, least, "length"), expected, seen, a.entry)
 
 
-def closest(episode: GradedEpisode, a: GradedBody, b: GradedBody) -> float:
-    """The smallest distance between the footprints of two bodies during an episode, within steps, too [m]."""
-    poses = episode.trace.pose[:, [a.index, b.index]]
-    poses = poses[~np.isnan(poses[:, :, 0]).any(axis=1)]
+@register("passes")
+class Passes(OfBodies, EpisodePredicate):
+    """On which side of its way every body of a selection passes each body of another one: the side of its direction of
+    motion (over 20 cm of its path) on which the nearest point of the other, or the middle of one with a drive, lies
+    where it comes closest. It does not pass, and fails, where that point lies more ahead of it or behind it than beside
+    it. An empty selection fails."""
+
+    by: Selection
+    """Name of the selection of the bodies that are passed."""
+    side: Literal["left", "right", "same", "alternating"]
+    """``left``: each of them lies to the left of its way; ``same``: all on one side, whichever; ``alternating``: each
+    next one along its path on the other side, as in a slalom, of which there must be two."""
+
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
+        """Look at each closest approach."""
+        bodies, others = (material.bodies(episode.scene, name) for name in (self.of, self.by))
+        seen, wrong = [], []
+        for body in bodies:
+            passed = sorted((*_passed(episode, body, other), other.name) for other in others if other is not body)
+            sides = [side for _, side, _ in passed]
+            seen.append((body, ", ".join(f"{name} {side or 'not passed'}" for _, side, name in passed)))
+            turns = [a != b for a, b in itertools.pairwise(sides)]
+            right = {"same": not any(turns), "alternating": bool(turns) and all(turns)}
+            if not right.get(self.side, {*sides} == {self.side}) or not all(sides) or not sides:
+                wrong.append(seen[-1])
+        return judged(f"{self.of} pass {self.by}: {self.side}", seen, wrong, "behavior")
+
+
+def _passed(episode: GradedEpisode, body: GradedBody, other: GradedBody) -> tuple[float, str]:
+    """Where a body passes another, along its path from its end back [m], and the side; empty if it does not pass."""
+    poses = _together(episode, [body, other])
     if not len(poses):
+        return 0.0, ""
+    way, there = poses[:, 0, :2], poses[:, 1, :2]
+    if other.kinematics is None:
+        there = shapely.get_coordinates(shapely.shortest_line(other.footprint, shapely.points(way)))[::2]
+    offsets = there - way
+    row = int(np.hypot(*offsets.T).argmin())
+    far = np.append(0.0, np.hypot(*np.diff(way, axis=0).T).cumsum())
+    (dx, dy), (x, y) = (np.diff(np.interp(far[row] + _STRIDE, far, column))[0] for column in way.T), offsets[row]
+    ahead, left = float(dx * x + dy * y), float(dx * y - dy * x)
+    return float(far[row] - far[-1]), ("left" if left > 0 else "right") if abs(left) > abs(ahead) else ""
+
+
+def closest(episode: GradedEpisode, a: GradedBody, others: list[GradedBody]) -> float:
+    """The smallest distance between the footprints of a body and another during an episode, within steps, too [m]."""
+    (b,) = others
+    first, second = _together(episode, [a, b]).transpose(1, 0, 2)
+    if not len(first):
         return math.inf  # they never meet in the world
-    poses[:, :, 2] = np.unwrap(poses[:, :, 2], axis=0)
-    far = np.hypot(*np.diff(poses[:, 0] - poses[:, 1], axis=0)[:, :2].T).max(initial=0.0)
-    first, second = np.hsplit(dense(poses.reshape(-1, 6), math.ceil(far / _SLIDE)), 2)
     centers = np.hypot(*(first[:, :2] - second[:, :2]).T)
     reach = sum(float(shapely.hausdorff_distance(shapely.Point(c.pose[:2]), c.footprint)) for c in (a, b))
     near = np.flatnonzero(centers <= centers.min() + (0.0 if a.radius and b.radius else reach))
     return min(edge_to_edge((a, first[row]), (b, second[row])) for row in near.tolist())
+
+
+def to_hull(episode: GradedEpisode, body: GradedBody, group: list[GradedBody]) -> float:
+    """The smallest distance of a body to the hull of a group during an episode, within steps, too [m]."""
+    poses, least = _together(episode, [body, *group]), math.inf
+    for part in np.array_split(poses, len(poses) // _ROWS + 1) if len(poses) else ():  # so that memory suffices
+        shapes = np.stack([_placed(one, np.nan_to_num(part[:, k])) for k, one in enumerate([body, *group])], axis=1)
+        shapes[np.isnan(part[..., 0])] = None
+        hulls = shapely.convex_hull(shapely.geometrycollections(shapes[:, 1:]))
+        least = min(least, float(shapely.distance(shapes[:, 0], hulls).min()))
+    return least
+
+
+def _together(episode: GradedEpisode, bodies: list[GradedBody]) -> Any:
+    """(T, N, 3) poses of bodies while the first is in the world with any other, with rows between distant steps."""
+    poses = episode.trace.pose[:, [body.index for body in bodies]]
+    here = ~np.isnan(poses[:, :, 0])
+    poses = poses[here[:, 0] & here[:, 1:].any(axis=1)]
+    poses[:, :, 2] = np.unwrap(np.nan_to_num(poses[:, :, 2]), axis=0)
+    steps = np.diff(poses[:, :1, :2] - poses[:, 1:, :2], axis=0)
+    far = np.nan_to_num(np.hypot(steps[..., 0], steps[..., 1])).max(initial=0.0)
+    return dense(poses.reshape(len(poses), -1), math.ceil(far / _SLIDE)).reshape(-1, len(bodies), 3)
 
 
 def edge_to_edge(*placed: tuple[GradedBody, Any]) -> float:
@@ -87,12 +159,16 @@ def edge_to_edge(*placed: tuple[GradedBody, Any]) -> float:
     (a, first), (b, second) = placed
     if a.radius is not None and b.radius is not None:
         return math.dist(first[:2], second[:2]) - a.radius - b.radius
-    return float(shapely.distance(_moved(a, first), _moved(b, second)))
+    return float(shapely.distance(_placed(a, first[None]), _placed(b, second[None]))[0])
 
 
-def _moved(body: GradedBody, pose: Any) -> Any:
-    if body.kinematics is None:
-        return body.footprint
-    x, y, heading = body.pose
-    turned = shapely.affinity.rotate(body.footprint, float(pose[2]) - heading, origin=(x, y), use_radians=True)
-    return shapely.affinity.translate(turned, float(pose[0]) - x, float(pose[1]) - y)
+def _placed(body: GradedBody, poses: Any) -> Any:
+    """(T,) the footprint of a body at (T, 3) poses."""
+    x, y, heading = poses.T[..., None] - np.array([0.0, 0.0, body.pose[2]])[:, None, None]
+
+    def put(corners: Any) -> Any:
+        dx, dy = np.moveaxis(corners.reshape(len(poses), -1, 2) - body.pose[:2], 2, 0)
+        cos, sin = np.cos(heading), np.sin(heading)
+        return np.stack([x + cos * dx - sin * dy, y + sin * dx + cos * dy], axis=2).reshape(-1, 2)
+
+    return shapely.transform(np.full(len(poses), body.footprint, dtype=object), put)

@@ -92,7 +92,7 @@ class Moves(OfBodies, EpisodePredicate):
     """Accepted values of the greatest turn rate, to either side [rad/s]."""
     standstill: Match | None = None
     """Accepted values of the longest time for which it stands still, at less than 2 cm/s, turning or not [s]. A body
-    that has arrived and has no further goal does not stand still from then on, and none does before it has come into
+    that has arrived and has no further goal does not stand still from then on, nor does one that has not yet come into
     the world."""
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
