@@ -65,7 +65,7 @@ def test_a_seed_begins_alike_with_more_people() -> None:
 
 
 def test_metrics_it_names_are_defined() -> None:
-    known = {metric.key for metric in METRICS}
+    known = {metric.key for metric in (*METRICS, *EPISODE_METRICS)}
     named = {span for span in spans(BODY) if re.fullmatch(r"[a-z]+(_[a-z]+)+", span)} & {
         *("arrived_share", "contacts_per_hour", "time_to_goal", "path_length", "distance_to_human_min"),
         *("personal_space_intrusion_ratio", "space_compliance"),
