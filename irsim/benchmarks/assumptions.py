@@ -23,7 +23,7 @@ def assumptions_of(scenarios: Mapping[str, ResolvedScenario]) -> list[str]:
     """
     told = [(name, (_contacts(scenario), _limits(scenario))) for name, scenario in scenarios.items()]
     sentences = [_joined((name, facts[column]) for name, facts in told) for column in range(2)]
-    return [*sentences, "behaviors know the poses and velocities of all objects exactly"] if told else []
+    return [*sentences, "what policies know, they know exactly and at once"] if told else []
 
 
 def _joined(facts: Iterable[tuple[str, str]]) -> str:

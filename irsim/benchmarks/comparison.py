@@ -205,6 +205,7 @@ def benchmark(
     head = BenchmarkResult(
         scenarios=names,
         behaviors=wanted,
+        information={label_of(one): words for one in opened if (words := one.knowledge())},
         digests=digests_of(opened),
         seeds=chosen,
         step_time=periods,

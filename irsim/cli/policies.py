@@ -37,11 +37,11 @@ def policies(
     out = console()
     table = Table(box=None, pad_edge=False, header_style="dim", show_header=name is None)
     if name is None:
-        for heading in ("policy", "kind", "returns", "needs", "drives", "what it does"):
+        for heading in ("policy", "kind", "returns", "knows", "drives", "what it does"):
             table.add_column(heading)
         for one in listed:
-            needs, drives = ", ".join(one.needs) or "-", ", ".join(one.drives)
-            row = (one.kind, one.output, clean(needs, 100), clean(drives, 100), clean(one.about, 200))
+            knows = one.knows or ", ".join(one.needs) or "-"
+            row = (one.kind, one.output, clean(knows, 100), clean(", ".join(one.drives), 100), clean(one.about, 200))
             table.add_row(Text(clean(one.name), "bold cyan"), *row)
         out.print(table)
         out.print("a file is a policy, too: irsim policies model.npz; irsim run SCENARIO --policy NAME uses one")
@@ -49,7 +49,8 @@ def policies(
     one = listed[0]
     period = "every step" if one.decision_dt is None else f"every {one.decision_dt:g} s"
     facts = {
-        "kind": one.kind, "returns": one.output, "needs": ", ".join(one.needs) or "nothing else",
+        "kind": one.kind, "returns": one.output, "class": one.knows, "knows": one.facts_known,
+        "needs": ", ".join(one.needs) or "nothing else",
         "does not see": one.unseen, "drives": ", ".join(one.drives), "decides": period, "sha256": one.digest or "",
         "not installed": one.install or "",
         "options": "" if one.meanings else "; ".join(f"{key}: {value}" for key, value in one.options.items()),

@@ -12,6 +12,7 @@ from pydantic import ConfigDict, Field
 
 import irsim._core as core
 from irsim.options.base import Options
+from irsim.options.knowledge import Fact
 from irsim.options.units import MAX_VERTICES, Bool, Count, Integer, Meters, Number, Seconds
 from irsim.options.vectors import Component, Point, Pose, vector
 
@@ -53,6 +54,8 @@ class BehaviorOptions(Options):
     """Whether it drives to the goal: without a `goal` of its own an object gets a hint."""
     follows_paths: ClassVar[bool] = True
     """Whether `follow` may name it as `local`, which drives along a path."""
+    knows: ClassVar[frozenset[Fact]] = frozenset()
+    """Its information besides its own state and goal; a test changes everything else and expects equal decisions."""
 
     name: str
     """Name of the behavior."""
@@ -69,6 +72,10 @@ class BehaviorOptions(Options):
     target_roles: Literal["all", "robot", "obstacle"] = "all"
     """Role of the objects that it reacts to: with `robot` it does not avoid people who are obstacles, with `obstacle`
     no robots."""
+
+    def known(self) -> frozenset[Fact]:
+        """Its information with these options."""
+        return self.knows
 
     def draws(self) -> bool:
         """Whether its decisions draw random numbers, so that they depend on the seed."""

@@ -43,6 +43,8 @@ def _policy(name: str, notes: list[str]) -> Answer:
     card = info.facts.get("card", {})
     period = "in every step" if info.decision_dt is None else f"every {info.decision_dt:g} s"
     facts = {
+        "class": info.knows,
+        "knows": info.facts_known,
         "needs": ", ".join(info.needs) or "only the robot and its goal",
         "drives": ", ".join(info.drives),
         "returns": info.output,

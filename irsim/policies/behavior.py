@@ -6,9 +6,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from pydantic import ValidationError
+
 from irsim.common.arrays import Floats
-from irsim.components.options import behavior_fields
+from irsim.components.options import BehaviorOptions, behavior_fields
 from irsim.diagnostics.errors import PolicyError, ScenarioError
+from irsim.options.knowledge import Fact
+from irsim.options.registry import BEHAVIORS
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Policy
 from irsim.scenario.behavior_override import AS_WRITTEN, merged_options, parse_behavior, raise_if_about_behavior
@@ -38,6 +42,17 @@ class BehaviorPolicy(Policy):
         self.text = self.source = text.strip()
         self.options: dict[str, Any] | None = parse_behavior(text)
         self.name = AS_WRITTEN if self.options is None else str(self.options["name"])
+
+    def known(self) -> frozenset[Fact] | None:
+        """What the behavior knows with its options; None for ``as-written`` and behaviors of Python."""
+        feature = None if self.options is None else BEHAVIORS.get(self.name)
+        if feature is None or self.options is None:
+            return None
+        try:
+            made = feature.options.model_validate(self.options)
+        except ValidationError:  # said where it drives robots
+            return None
+        return made.known() if isinstance(made, BehaviorOptions) else None
 
     def act(self, observations: Observations) -> Floats:
         """Refuse, because behaviors run in the engine.

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from irsim.options.knowledge import knowledge_text
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import behavior_names, is_installed, names_file, names_trained, open_policy
@@ -34,6 +35,8 @@ class PolicyInfo:
         about: Its purpose.
         output: Its result: ``control``, ``velocity``, or ``engine`` for a behavior.
         needs: Observations besides the state and the goal of the robot.
+        knows: Class of its information, such as ``circles+intent``; empty if that is not known.
+        facts_known: That information in words.
         drives: Names of the drives that it controls; ``any``.
         decision_dt: Time between two decisions [s]; None: every step.
         options: Option → its default in words; ``required`` without one.
@@ -50,6 +53,8 @@ class PolicyInfo:
     output: str
     needs: list[str]
     drives: list[str]
+    knows: str = ""
+    facts_known: str = ""
     decision_dt: float | None = None
     options: dict[str, str] = field(default_factory=dict)
     meanings: dict[str, str] = field(default_factory=dict)
@@ -102,7 +107,8 @@ def _behavior(name: str) -> PolicyInfo:
         about = "" if feature is None else _about(feature.options)
         options = {} if feature is None else {"…": _IN_ENGINE.format(name)}
         drives = ["any"] if feature is not None else CUSTOM_BEHAVIORS.drives(name) or ["any"]
-    return PolicyInfo(name, "behavior", about or "Registered in Python.", "engine", [], drives, options=options)
+    about, told = about or "Registered in Python.", _knowledge(BehaviorPolicy(name))
+    return PolicyInfo(name, "behavior", about, "engine", [], drives, *told, options=options)
 
 
 def _random() -> PolicyInfo:
@@ -119,6 +125,7 @@ def _info(name: str, kind: str, policy: Any, about: str, options: dict[str, str]
     known = isinstance(policy, Policy) or (isinstance(policy, type) and issubclass(policy, Policy))
     needs = policy.needs if known and isinstance(policy.needs, Needs) else Needs()
     package = policy.package if known else None
+    knows, facts_known = _knowledge(policy) if isinstance(policy, Policy) else ("", "")
     wanted = [] if package is None else [f"the package {package[0]}"]
     drives = sorted(policy.drives) if known and policy.drives is not None else ["any"]
     return PolicyInfo(
@@ -127,6 +134,8 @@ def _info(name: str, kind: str, policy: Any, about: str, options: dict[str, str]
         about=about,
         output=policy.output if known else "known once it is made",
         needs=[*_words(needs), *wanted],
+        knows=knows,
+        facts_known=facts_known,
         drives=["any"] if known and policy.output == "velocity" else drives,
         decision_dt=policy.decision_dt if known else None,
         options=options,
@@ -136,6 +145,12 @@ def _info(name: str, kind: str, policy: Any, about: str, options: dict[str, str]
         digest=policy.digest if known else None,
         facts=policy.describe() if isinstance(policy, NetworkPolicy) else {},
     )
+
+
+def _knowledge(policy: Policy) -> tuple[str, str]:
+    """The class of what a policy knows, and that in words; empty if it is not known."""
+    known = policy.known()
+    return (policy.knowledge() or "", "" if known is None else knowledge_text(known))
 
 
 def _words(needs: Needs) -> list[str]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from irsim.common.arguments import as_given, is_number, is_whole_number
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError
+from irsim.options.knowledge import Fact, knowledge_class
 
 if TYPE_CHECKING:
     import numpy as np
@@ -159,6 +160,27 @@ class Policy(ABC):
             (B, 2) velocities in the world frame [m/s] for ``output = "velocity"``; else (B, C) controls in the command
             frame of the drive, with at least as many columns as it has controls. Limits are applied by the simulation.
         """
+
+    def known(self) -> frozenset[Fact] | None:
+        """Its information besides the state and goal of its own robot: by default all that its ``needs`` bring.
+
+        None if it cannot be told, as for the behaviors of a scenario.
+        """
+        known: set[Fact] = set()
+        if self.needs.neighbors:
+            known |= {"circles", "headings", "arrivals"}
+        if self.needs.neighbor_extents:
+            known.add("outlines")
+        if self.needs.scan:
+            known.add("scan")
+        if self.needs.map:
+            known.add("map")
+        return frozenset(known)
+
+    def knowledge(self) -> str | None:
+        """The class of its information, see ``irsim.options.knowledge.knowledge_class``; None if it cannot be told."""
+        known = self.known()
+        return None if known is None else knowledge_class(known, self.needs.neighbors, self.needs.neighbor_range)
 
     def remarks(self) -> Mapping[int, str]:
         """Why it stands still with robots, for the reason of a run that fails: id of a robot -> clause."""

@@ -231,7 +231,7 @@ def assumed(folder: Path, **scenes: tuple[str, str]) -> str:
 def test_what_is_taken_for_granted_is_said_and_scenes_that_differ_are_named(tmp_path: Path) -> None:
     assert assumed(tmp_path, plain=(", step_time: 0.2", "")) == (  # as in 2.12
         "contacts count at the ends of steps of 0.2 s only; robots change their speed at once (no acce); "
-        "behaviors know the poses and velocities of all objects exactly."
+        "what policies know, they know exactly and at once."
     )
     real = assumed(tmp_path, real=(", contacts: swept", ", acce: [1, 2]"))
     assert real.startswith("contacts within steps count, too; accelerations are limited; ")

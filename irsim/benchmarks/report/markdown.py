@@ -11,11 +11,13 @@ from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Pro
 
 __all__ = [
     "INTERVALS",
+    "POLICIES",
     "RANKS",
     "Table",
     "about_of",
     "cells_of",
     "citation_of",
+    "classes_of",
     "columns_of",
     "differences_of",
     "facts_of",
@@ -47,6 +49,8 @@ INTERVALS = (
     "scenarios give each the same weight, and their intervals resample scenarios, too. Times count robots that arrived."
 )
 """Notes that a reader needs to judge the numbers."""
+POLICIES = "Policies by what they know besides their own state and goal"
+"""The heading of the policies."""
 RANKS = "Ranks by success, with those that the intervals of all pairs allow"
 """The heading of the ranks."""
 Table = tuple[list[str], list[list[str]]]
@@ -73,8 +77,10 @@ def markdown(result: BenchmarkResult, notes: Sequence[str] = ()) -> str:
         lines += ["", f"Differences to {first} with the same seeds:", "", *_table(differences)]
     if ranks := ranks_of(result):
         lines += ["", f"{RANKS}:", "", *_table(ranks)]
-    lines += ["", "Policies:", ""]
-    lines += [f"- {markdown_text(label)}: {markdown_code(text)}" for text, label in labels.items()]
+    lines += ["", f"{POLICIES}:", ""]
+    for known, texts in classes_of(result).items():
+        lines += [f"- {markdown_text(known)}:"] if known else []
+        lines += [f"{'  ' * bool(known)}- {markdown_text(labels[text])}: {markdown_code(text)}" for text in texts]
     lines += ["", *(f"Note: {markdown_text(note)}  " for note in (*result.notes, *notes))]
     lines += ["", INTERVALS, "", f"Reproduce: {markdown_code(result.reproduce)} with irsim {result.version}"]
     lines += ["", f"Cite this run: {markdown_text(citation_of(result))}"]
@@ -172,6 +178,14 @@ def differences_of(result: BenchmarkResult) -> Table | None:
         if row.paired
     ]  # fmt: skip
     return (["scenario", "policy", "pairs", *(heading for _, heading in _DIFFERENCES)], rows) if rows else None
+
+
+def classes_of(result: BenchmarkResult) -> dict[str, list[str]]:
+    """What policies know, as a class, -> the policies; "" for those of which it cannot be told."""
+    classes: dict[str, list[str]] = {}
+    for behavior in result.behaviors:
+        classes.setdefault(result.information.get(behavior, ""), []).append(behavior)
+    return classes
 
 
 def ranks_of(result: BenchmarkResult) -> Table | None:

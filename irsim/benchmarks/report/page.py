@@ -10,11 +10,13 @@ from html import escape
 from irsim.benchmarks.report.charts import charts
 from irsim.benchmarks.report.markdown import (
     INTERVALS,
+    POLICIES,
     RANKS,
     Table,
     about_of,
     cells_of,
     citation_of,
+    classes_of,
     columns_of,
     differences_of,
     facts_of,
@@ -62,8 +64,13 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
         f"<h2>Differences to {_shown(labels[result.behaviors[0]])} with the same seeds</h2>" + _table(differences)
         if differences else "",
         f"<h2>{_shown(RANKS)}</h2>" + _table(ranks) if (ranks := ranks_of(result)) else "",
-        "<h2>Policies</h2>", "<ul>",
-        *(f"<li>{_shown(label)}: <code>{_shown(text)}</code></li>" for text, label in labels.items()), "</ul>",
+        f"<h2>{_shown(POLICIES)}</h2>",
+        *(
+            f"<p>{_shown(known or 'not stated')}</p><ul>"
+            + "".join(f"<li>{_shown(labels[text])}: <code>{_shown(text)}</code></li>" for text in texts)
+            + "</ul>"
+            for known, texts in classes_of(result).items()
+        ),
         *(f'<p class="note">{_shown(note)}</p>' for note in (*result.notes, *notes)),
         "<h2>Charts</h2>" if figures else "", f'<div class="charts">{"".join(figures)}</div>',
         f"<h2>Episodes that failed</h2><p>{len(worst)} of {failed:,} are shown.</p>" if worst else "", *worst,

@@ -8,6 +8,7 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.components.options import BehaviorOptions
+from irsim.options.knowledge import Fact
 from irsim.options.regions import Region
 from irsim.options.registry import BEHAVIORS, PLANNERS
 from irsim.options.selection import Select
@@ -36,6 +37,7 @@ class Follow(BehaviorOptions):
     """
 
     avoids: ClassVar[bool] = True
+    knows: ClassVar[frozenset[Fact]] = frozenset({"map", "arrivals"})
     follows_paths: ClassVar[bool] = False
 
     schema_extra: ClassVar[dict[str, Any]] = {
@@ -77,6 +79,12 @@ class Follow(BehaviorOptions):
     avoid: list[Annotated[str, Field(strict=True, min_length=1)]] = []
     """Names of zones of `world.zones` that are solid for this object alone: its body does not enter them, not even to
     give way. One that starts in a zone or is pushed into it leaves it."""
+
+    def known(self) -> frozenset[Fact]:
+        """The map, who has parked, and what its local behavior knows; with one that avoids also outlines of others."""
+        if not isinstance(self.local, BehaviorOptions) or not self.local.avoids:
+            return self.knows
+        return self.knows | self.local.known() | {"circles", "outlines"}
 
     def draws(self) -> bool:
         """Whether its local behavior draws random numbers."""

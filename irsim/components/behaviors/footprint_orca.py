@@ -8,6 +8,7 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.components.options import BehaviorOptions
+from irsim.options.knowledge import Fact
 from irsim.options.registry import BEHAVIORS
 from irsim.options.units import Bool, Count, Meters, MetersPerSecond, Seconds
 
@@ -23,6 +24,7 @@ class FootprintOrca(BehaviorOptions):
 
     in_group: ClassVar[bool] = True
     avoids: ClassVar[bool] = True
+    knows: ClassVar[frozenset[Fact]] = frozenset({"circles", "outlines", "arrivals", "laws", "static"})
     stops_in_time: ClassVar[bool] = True
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "footprint_orca"}]}

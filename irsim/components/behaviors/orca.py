@@ -8,6 +8,7 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.components.options import BehaviorOptions
+from irsim.options.knowledge import Fact
 from irsim.options.registry import BEHAVIORS
 from irsim.options.units import Count, Degrees, Fraction, Meters, MetersPerSecond, Seconds
 
@@ -24,6 +25,7 @@ class Orca(BehaviorOptions):
 
     in_group: ClassVar[bool] = True
     avoids: ClassVar[bool] = True
+    knows: ClassVar[frozenset[Fact]] = frozenset({"circles", "arrivals", "laws", "static"})
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "orca", "neighborDist": 10.0, "timeHorizon": 5.0}]}
 

@@ -9,6 +9,7 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.components.options import BehaviorOptions
+from irsim.options.knowledge import Fact
 from irsim.options.registry import BEHAVIORS
 from irsim.options.units import Degrees, Meters, MetersPerSecond, Number
 
@@ -22,6 +23,7 @@ class Rvo(BehaviorOptions):
     """
 
     avoids: ClassVar[bool] = True
+    knows: ClassVar[frozenset[Fact]] = frozenset({"circles", "static"})
 
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [{"name": "rvo", "vxmax": 1.5, "vymax": 1.5, "acce": 1.0, "factor": 1.0}]

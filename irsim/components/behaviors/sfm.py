@@ -8,6 +8,7 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.components.options import BehaviorOptions
+from irsim.options.knowledge import Fact
 from irsim.options.registry import BEHAVIORS
 from irsim.options.units import Degrees, Integer, Meters, MetersPerSecond, Number, Seconds
 
@@ -23,6 +24,7 @@ class Sfm(BehaviorOptions):
 
     in_group: ClassVar[bool] = True
     avoids: ClassVar[bool] = True
+    knows: ClassVar[frozenset[Fact]] = frozenset({"circles", "static"})
     touches: ClassVar[bool] = True
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "sfm", "vmax": 1.3}]}

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
+from irsim.options.knowledge import Fact
 from irsim.policies.driver import decision_steps
 from irsim.policies.networks.document import PolicyHead
 from irsim.policies.networks.errors import PolicyInputError
@@ -53,6 +54,10 @@ class NetworkPolicy(Policy):
         self.decision_dt = head.decision_dt
         self.digest = facts.get("sha256")
         self._facts = dict(facts)
+
+    def known(self) -> frozenset[Fact]:
+        """What its parts observe."""
+        return frozenset[Fact]().union(*(part.known() for part in self.head.layout.parts))
 
     def act(self, observations: Observations) -> Floats:
         """Decide for B robots; the decision of each is the same, bit for bit, in any batch.

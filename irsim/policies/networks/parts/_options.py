@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from irsim.options.base import Options, problem
+from irsim.options.knowledge import Fact
 from irsim.options.registry import Registry
 from irsim.policies.networks.values import Channel
 from irsim.policies.observations import Observations
@@ -46,6 +47,10 @@ class PartOptions(Options):
     def needs(self) -> Needs:
         """The observations that it needs."""
         return Needs()
+
+    def known(self) -> frozenset[Fact]:
+        """What it knows of the world besides the robot's own state and goal."""
+        return frozenset()
 
     def channels(self) -> tuple[Channel, ...]:
         """Its numbers in order, for each member if it is a set."""

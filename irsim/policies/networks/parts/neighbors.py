@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import AfterValidator, Field
 
 import irsim._core as core
+from irsim.options.knowledge import Fact
 from irsim.options.units import Bool, Integer, Meters, MetersPerSecond
 from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.parts._options import PARTS, PartOptions, unique
@@ -84,6 +85,14 @@ class NeighborsPart(PartOptions):
             static_neighbors=self.static,
             neighbor_extents=any(name in _EXTENTS for name in self.features),
         )
+
+    def known(self) -> frozenset[Fact]:
+        """Circles, and what its features add."""
+        known: set[Fact] = {"circles"}
+        known |= {"outlines"} if self.needs().neighbor_extents else set()
+        known |= {"arrivals"} if "arrived" in self.features else set()
+        known |= {"headings"} if {"heading_cos", "heading_sin"} & set(self.features) else set()
+        return frozenset(known)
 
     def channels(self) -> tuple[Channel, ...]:
         """One for each feature."""

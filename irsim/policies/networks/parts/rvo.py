@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
+from irsim.options.knowledge import Fact
 from irsim.options.units import Bool, Integer, Meters, MetersPerSecond, Seconds
 from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.parts._options import PARTS, PartOptions
@@ -37,6 +38,10 @@ class RvoSelf(PartOptions):
     """Added to the robot's own radius."""
     decimals: Annotated[Integer, Field(ge=0, le=9)] | None = 2
     """Numbers are rounded to so many decimals; null keeps them."""
+
+    def known(self) -> frozenset[Fact]:
+        """Circles."""
+        return frozenset({"circles"})
 
     def channels(self) -> tuple[Channel, ...]:
         """One for each number."""

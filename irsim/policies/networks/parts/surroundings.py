@@ -8,6 +8,7 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.options.knowledge import Fact
 from irsim.options.units import Bool, Integer, Meters, Radians
 from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.parts._options import PARTS, PartOptions
@@ -38,6 +39,10 @@ class ScanPart(PartOptions):
     def needs(self) -> Needs:
         """A lidar."""
         return Needs(scan=True)
+
+    def known(self) -> frozenset[Fact]:
+        """A lidar."""
+        return frozenset({"scan"})
 
     def channels(self) -> tuple[Channel, ...]:
         """One for each sector."""
@@ -93,6 +98,10 @@ class MapPart(PartOptions):
     def needs(self) -> Needs:
         """The map, with cells half as large as in the picture."""
         return Needs(map=True, map_resolution=0.5 * self.size / self.cells)
+
+    def known(self) -> frozenset[Fact]:
+        """The map."""
+        return frozenset({"map"})
 
     def channels(self) -> tuple[Channel, ...]:
         """One for each cell."""
