@@ -23,6 +23,7 @@ __all__ = [
     "mappings",
     "paths",
     "step",
+    "unknown_key",
     "yaml_text",
 ]
 
@@ -99,6 +100,29 @@ def step(root: Node, nodes: list[Node], word: str) -> list[Node]:
     options = [option for node in nodes for option in mappings(root, node)]
     named = [option for option in options if component_name(option) == word]
     return named or [option["properties"][word] for option in options if word in option["properties"]]
+
+
+def unknown_key(root: Node, path: str) -> tuple[str, str, list[str]] | None:
+    """The first key of a path that the language lacks; None if there are all.
+
+    Args:
+        root: JSON Schema of the language.
+        path: Such as ``robot[0].vel_max[1]``. Below a mapping of the user's own every key exists.
+
+    Returns:
+        The path to the mapping that lacks the key, the key, and the keys that the mapping may have.
+    """
+    nodes, place = [root], ""
+    for word in re.sub(r"\[[^\]]*\]", "", path).split("."):
+        options = [option for node in nodes for option in mappings(root, node)]
+        kinds = {option.get("type", "object") for node in nodes for option in alternatives(root, node)}
+        if not options and "object" in kinds:
+            return None
+        found = [option["properties"][word] for option in options if word in option["properties"]]
+        if not found:
+            return place, word, sorted({key for option in options for key in option["properties"]})
+        nodes, place = found, f"{place}.{word}".lstrip(".")
+    return None
 
 
 def paths(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cache
@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, create_model
 from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, PydanticCustomError
+from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, ValidationError
 
 from irsim.common.field_docs import field_docs
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-__all__ = ["SCHEMA_PARTS", "Options", "SchemaParts", "open_options", "problem", "shared_schema"]
+__all__ = ["SCHEMA_PARTS", "Options", "SchemaParts", "open_options", "problem", "problems_at", "shared_schema"]
 
 
 @dataclass
@@ -98,6 +98,21 @@ def problem(code: str, message: str, **details: Any) -> PydanticCustomError:
             ``tolerated`` if IR-SIM 2.12 continues with the better value, or ``tolerated_as``, the value it uses.
     """
     return PydanticCustomError(code, "{message}", {"message": message, **details})
+
+
+def problems_at(
+    kind: str, errors: Iterable[tuple[tuple[int | str, ...], PydanticCustomError]], given: Any = None
+) -> ValidationError:
+    """Errors at places below the value that a validator looks at.
+
+    Args:
+        kind: Name of what is validated.
+        errors: Keys and indices that lead to the place of each error, and the error.
+        given: The wrong value.
+    """
+    return ValidationError.from_exception_data(
+        kind, [InitErrorDetails(type=error, loc=place, input=given) for place, error in errors]
+    )
 
 
 @cache

@@ -8,10 +8,10 @@ from typing import Any, Literal, get_origin
 
 from pydantic import BaseModel, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, ValidationError, core_schema
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from irsim.diagnostics.diagnostic import is_slip_of, nearest
-from irsim.options.base import SCHEMA_PARTS, open_options, problem, shared_schema
+from irsim.options.base import SCHEMA_PARTS, open_options, problem, problems_at, shared_schema
 from irsim.options.registry import CustomBehaviors, Registry
 
 __all__ = ["Choices", "Select"]
@@ -152,7 +152,7 @@ class Select:
                 replace=self.default,
                 tolerated=True,
             )
-            raise _at(kind, empty, None, "name")
+            raise problems_at(kind, [(("name",), empty)])
         for other in _NAME_WORDS:
             if self.alias is None and "name" not in value and isinstance(value.get(other), str):
                 wrong = problem(
@@ -162,15 +162,15 @@ class Select:
                     fix="rename it to 'name'",
                     rename="name",
                 )
-                raise _at(kind, wrong, other, other)
+                raise problems_at(kind, [((other,), wrong)], other)
         name = self.name_of(value)
         if name is None:
             missing = problem("missing-key", "'name' is missing", allowed=self.names(), fix="add 'name: ...'")
-            raise _at(kind, missing, value, "name")
+            raise problems_at(kind, [(("name",), missing)], value)
         model = self.model_for(value)
         if model is None:
-            at_alias = where and "name" not in value and self.alias is not None
-            raise _at(kind, self._unknown(name, alone=not where), name, *((self.alias,) if at_alias else where))
+            place = (self.alias,) if where and "name" not in value and self.alias is not None else where
+            raise problems_at(kind, [(place, self._unknown(name, alone=not where))], name)
         return model.model_validate(self._prepared(value, name))
 
     def _prepared(self, value: Mapping[str, Any], name: str) -> dict[str, Any]:
@@ -264,7 +264,3 @@ class Select:
         if not is_default:
             by_alias["required"] = [self.alias]
         return {**reference, "if": {"required": ["name"]}, "else": by_alias}
-
-
-def _at(kind: str, error: PydanticCustomError, given: Any, *location: str) -> ValidationError:
-    return ValidationError.from_exception_data(kind, [InitErrorDetails(type=error, loc=location, input=given)])

@@ -42,6 +42,21 @@ SLIPS: list[tuple[dict[str, Any], str]] = [
     ({"each": {"of": "robots", "has": {"diameter": 0.6}}}, "radius"),
     ({"each": {"of": "robots", "has": {"drive": "diff"}}}, "kinematics"),
     ({"sensor": {"of": "robots", "has": {"beams": 90}}}, "number"),
+    ({"each": {"of": "robots", "has": {"acceleration": 0.6}}}, "acce"),
+    ({"each": {"of": "robots", "has": {"behavior": "dahs"}}}, "dash"),
+    ({"each": {"of": "robots", "has": {"local": {"in": ["dash", "ocra"]}}}}, "orca"),
+    ({"each": {"of": "robots", "has": {"kinematics": {"not": ["akcer"]}}}}, "acker"),
+    ({"each": {"of": "robots", "has": {"hue": "rde"}}}, "red"),
+    ({"each": {"of": "robots", "has": {"arrive_mode": "postion"}}}, "position"),
+    ({"placed": {"of": "robots", "rows": [{"x": 2, "shape": "circel"}]}}, "circle"),
+    ({"sensor": {"of": "robots", "has": {"name": "lidra2d"}}}, "lidar2d"),
+    ({"world": {"collision_mode": "reactve"}}, "reactive"),
+    ({"world": {"map": "perln"}}, "perlin"),
+    ({"calls": {"tool": "run_epsiode"}}, "run_episode"),
+    ({"calls": {"order": ["lookup", "validate"]}}, "validate_scenario"),
+    ({"calls": {"tool": "irsim valdate"}}, "irsim validate"),
+    ({"edits": {"only": ["robot[0].vel_max[0]", "robot[0].axce"]}}, "acce"),
+    ({"edits": {"must": {"robot[0].sensors[0].rnage_max": 4}}}, "range_max"),
 ]
 
 
@@ -59,6 +74,44 @@ def test_an_expression_that_python_cannot_read_is_refused() -> None:
             Assertion.model_validate({"id": "slip", **said})
 
 
+NUMBERS: list[tuple[dict[str, Any], str]] = [
+    ({"each": {"of": "robots", "has": {"radius": {"eq": "3 mters"}}}}, "'3 mters' is not a number with a known unit"),
+    ({"count": {"of": "robots", "number": {"in": [2, "three"]}}}, "'three' is not a number with a known unit"),
+    ({"world": {"width": [3, True]}}, "True is not a number with a known unit"),
+    ({"each": {"of": "robots", "has": {"static": "yse"}}}, "static is true or false"),
+    ({"each": {"of": "robots", "has": {"color": "red"}}}, "there is no color 'red'"),
+    ({"edits": {"only": ["robot.vel_max"]}}, "'robot.vel_max' does not say which robot"),
+    ({"edits": {"only": ["robot[0].name.first"]}}, "there is no key of robot.name 'first'"),
+]
+
+
+@pytest.mark.parametrize(("said", "why"), NUMBERS)
+def test_a_value_that_nothing_can_have_is_an_error(said: dict[str, Any], why: str) -> None:
+    with pytest.raises(ValidationError, match=re.escape(why)):
+        Assertion.model_validate({"id": "slip", **said})
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        {"each": {"of": "robots", "has": {"behavior": {"not": ["replay"]}, "color": "#ff0000", "tags": ["guide"]}}},
+        {"each": {"of": "robots", "has": {"radius": "20cm", "goal_x": "= world.width - 1", "loop": {"given": True}}}},
+        {"calls": {"tool": "write_*", "order": ["read_file", "irsim run"]}},
+        {"edits": {"only": ["obstacle", "obstacle[*].behavior.vmax", "world.obstacle_map.fill", "robot[0].goal[1]"]}},
+    ],
+)
+def test_known_names_are_accepted(said: dict[str, Any]) -> None:
+    Assertion.model_validate({"id": "right", **said})
+
+
+def test_a_misspelt_key_of_the_given_file_may_be_edited() -> None:
+    given = {**RIGHT_CASE, "files": {"scenario.yaml": "robot: {goal_treshold: 0.2}\n"}}
+    edits = {"only": ["robot[0].goal_treshold"], "must": {"robot[0].goal_treshold": {"given": False}}}
+    assert instance_of({**given, "assert": [{"id": "a", "edits": edits}]}).case.id == "own"
+    with pytest.raises(CaseError, match="goal_threshold"):
+        instance_of({**given, "assert": [{"id": "a", "edits": {"only": ["robot[0].goal_threshld"]}}]})
+
+
 @pytest.mark.parametrize(
     ("part", "place", "what"),
     [
@@ -72,7 +125,16 @@ def test_an_expression_that_python_cannot_read_is_refused() -> None:
         ("free: [{facts: [colour, drive]}]", "2:25", "fix: write kinematics"),
         ("assert: [{id: a, count: {of: all, number: {min: 1}}}]", "2:44", "fix: rename it to 'ge'"),
         ("assert: [{id: a, swap: {of: all}}]", "2:18", "fix: irsim-evals predicates says what"),
-        ("assert: [{id: a, says: {any_of: [x], turn: 2}}]", "1:1", "'a' is about a later turn than the last one, 1"),
+        ("assert: [{id: a, says: {any_of: [x], turn: 2}}]", "2:44", "this turn is later than the last one, 1"),
+        ("assert: [{id: a, says: {any_of: [x]}}, {id: a, says: {any_of: [y]}}]", "2:45", "is called 'a', too"),
+        ("assert: [{id: a, world: {top: 6, right: '= robots.raduis'}}]", "2:41", "fix: write radius"),
+        ("assert: [{id: a, count: {of: all, number: {ge: '= robot.x', le: 2}}}]", "2:48", "fix: write robots"),
+        ("assert: [{id: a, files: {pattern: x, number: '= robots.x'}}]", "2:46", "has no world whose properties"),
+        ("assert: [{id: a, edits: {base: scenario.yml, same: false}}]", "2:32", "there is no file 'scenario.yml'"),
+        ("assert: [{id: a, edits: {only: ['robot[0].axce']}}]", "2:33", "fix: write acce"),
+        ("assert: [{id: a, count: {of: all, number: {gt: 1}}}]", "2:44", "fix: rename it to 'ge'"),
+        ("episodes: [{seconds: 3, assert: [{id: a, sees: {of: robots, what: statcs}}]}]", "2:67", "write statics"),
+        ("category: [geomtry, warehouse]", "2:12", "fix: write geometry"),
         ("assert: [{id: a, inside: {of: all, region: [0, 0, 1]}}]", "2:44", "item 4 is missing"),
         ("assert: [{id: a, every_scenario: {that: [{cuont: {}}]}}]", "2:42", "fix: write count"),
         ("assert: [{id: a, facing: {of: all, toward: nort}}]", "2:44", "fix: write north"),
@@ -269,6 +331,29 @@ def test_cases_of_another_folder_are_exported_graded_and_proved(tmp_path: Path) 
     assert code == 2
     assert f"{golds}/own holds 1 right answer, and each case needs 2" in text
     assert f"{golds}/other/two does not pass: robots: robots: 0" in text
+
+
+def test_the_golds_of_a_file_lie_beside_it_or_in_the_folder_that_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = written(tmp_path / "mine" / "cases", "own", CASE_TEXT)
+    assert f"{tmp_path}/mine/golds/own holds 0 right answers" in said("check", file, "--grade")[1]
+    for name, radius in (("one", 0.35), ("two", 0.34)):
+        gold(tmp_path / "mine" / "golds", "own", name, radius)
+    code, text = said("check", file, "--grade")
+    assert (code, f"2 golds in {tmp_path}/mine/golds/own" in text) == (0, True)
+    deeper = written(tmp_path / "mine" / "cases" / "more", "own", CASE_TEXT)
+    monkeypatch.chdir(deeper.parent)
+    assert said("check", "own.yaml", "--grade")[0] == 0
+    gold(tmp_path / "others", "own", "three")
+    text = said("check", file, "--grade", "--golds", tmp_path / "others")[1]
+    assert f"{tmp_path}/others/own holds 1 right answer, and each case needs 2" in text
+    assert said("check", EVALS / "cases" / "pub-01.yaml")[0] == 0
+
+
+def test_without_golds_nothing_is_said_of_idle_assertions(tmp_path: Path) -> None:
+    file = written(tmp_path / "cases", "own", CASE_TEXT)
+    assert "unbroken" not in said("check", file, "--grade")[1]
 
 
 def test_a_set_is_proved_and_listed_with_the_cases_and_run_if_it_is_named() -> None:

@@ -12,8 +12,8 @@ import pytest
 from irsim.options.registry import BEHAVIORS, KINEMATICS
 from irsim_evals.grader.matching import Match, matches
 from irsim_evals.grader.predicates.bodies import parameter
-from irsim_evals.grader.properties import value_of
-from tests.evals.conftest import ROOT, graded, made_up, world
+from irsim_evals.grader.properties import PROPERTIES, value_of
+from tests.evals.conftest import ROOT, graded, made_up, seen, world
 
 CAR = "kinematics: {name: acker, wheelbase: 1%s}, vel_max: [1, %s], vel_min: [-1, %s]"
 PAIR = "{kinematics: {name: diff}, state: [%s, 5, 0], goal: [5, 9, 0], behavior: %s}"
@@ -62,6 +62,10 @@ def test_a_steering_angle_is_what_limits_and_drive_leave(car: str, left: float |
         ("kinematics: {name: diff, alpha: [1, 1, 1, 1]}", "noise", False),
         ("kinematics: {name: diff}, fov: 2, fov_radius: 3, plot: {show_fov: true}", "show_fov", True),
         ("kinematics: {name: diff}, plot: {show_fov: true}", "show_fov", False),
+        ("kinematics: {name: diff}, fov: 2, fov_radius: 3", "fov", 2.0),
+        ("kinematics: {name: diff}, fov: 2, sensors: [{name: lidar2d, range_max: 4}]", "fov_radius", 4.0),
+        ("kinematics: {name: diff}, sensors: [{name: lidar2d}]", "fov", None),  # a lidar alone sees nobody
+        ("kinematics: {name: diff}, sensors: [{name: lidar2d}]", "fov_radius", None),
     ],
 )  # fmt: skip
 def test_a_property_is_what_the_built_world_does(keys: str, name: str, value: Any) -> None:
@@ -149,9 +153,9 @@ def test_a_measured_value_may_depend_on_the_answer(width: float, limit: Any, pas
 @pytest.mark.parametrize(
     ("relation", "problem"),
     [
-        ("= robots.widht", "there is no property 'widht'; write width"),
-        ("= robot.width", "there is no selection 'robot'; write robots"),
-        ("= world.widht", "there is no property of the world 'widht'; write width"),
+        ("= robots.widht", "there is no property 'widht'"),
+        ("= robot.width", "there is no selection 'robot'"),
+        ("= world.widht", "there is no property of the world 'widht'"),
         ("= 2 + 3", "names no property"),
         ("= robots.width.real", "cannot contain"),
         ("= __import__(robots.width)", "cannot contain"),
@@ -172,6 +176,20 @@ def test_no_value_may_be_as_good_as_zero(value: float | None, accepted: bool) ->
     match = Match.model_validate({"eq": 0, "or_none": True})
     assert matches(match, value, "speed") == accepted
     assert match.words() == "0 or none"
+
+
+def test_no_value_of_any_property_may_be_as_good_as_a_value() -> None:
+    """Where a body lacks a property, or a sensor a parameter, it is None, which `or_none` accepts."""
+    body = "kinematics: {name: diff}, sensors: [{name: contact2d}]"
+    for name, one in PROPERTIES.items():
+        [value] = of_robot(body, name)
+        assert value is None or value == value, name
+        if value is None:
+            assert matches(Match.model_validate({"eq": 0, "or_none": True}), value, one.kind), name
+    observation = seen(
+        world(f"robot: {{{body}}}"), "sensor", {"of": "robots", "has": {"range_max": {"eq": 3, "or_none": True}}}
+    )
+    assert observation.passed
 
 
 REGISTERED = {name for registry in (BEHAVIORS, KINEMATICS) for name in registry.names()} - {"static"}

@@ -19,13 +19,11 @@ from irsim_evals.grader.artefact import Answer
 
 __all__ = ["Task", "answer", "best_template", "slots", "task_of", "written"]
 
-_SILENT = frozenset(
-    {
-        "a", "an", "and", "are", "as", "at", "be", "by", "each", "every", "for", "from", "has", "have", "in", "into",
-        "is", "it", "its", "not", "of", "on", "one", "or", "so", "than", "that", "the", "their", "them", "then", "they",
-        "this", "to", "up", "use", "want", "which", "who", "with", "without", "you", "i", "me", "my", "make",
-    }
-)  # fmt: skip
+_SILENT = {
+    "a", "an", "and", "are", "as", "at", "be", "by", "each", "every", "for", "from", "has", "have", "in", "into", "is",
+    "it", "its", "not", "of", "on", "one", "or", "so", "than", "that", "the", "their", "them", "then", "they", "this",
+    "to", "up", "use", "want", "which", "who", "with", "without", "you", "i", "me", "my", "make",
+}  # fmt: skip
 """Words of a request that say nothing of a template."""
 _WINDOW = 24
 """Number of characters before and after a number in which its words are looked for."""

@@ -12,13 +12,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, create_model, model_validator
 
-from irsim.options.base import problem
+from irsim.diagnostics.diagnostic import is_slip_of
+from irsim.options.base import problem, problems_at
 from irsim_evals.cases.drawing import PICTURES, Drawing, Record
 from irsim_evals.grader.matching import Quantity, Seeds
 from irsim_evals.grader.predicates._base import Predicate, registered, stands_at_start
 from irsim_evals.grader.relations import unknown_words
 from irsim_evals.grader.selection import BUILT_IN, Selection, Selections, Selector
-from irsim_evals.grader.words import BehaviorName, Listed, OneOf, Regex
+from irsim_evals.grader.words import BehaviorName, Listed, OneOf, Regex, unknown
 
 __all__ = [
     "FACTS", "GROUPS", "WORLD_FACTS", "Assertion", "Case", "Disposition", "EpisodePlan", "Parameter", "Pin", "Waiver",
@@ -93,7 +94,9 @@ class _AssertionBase(Record):
         given = [name for name in registered() if getattr(self, _attribute(name)) is not None]
         if len(given) != 1:
             said = " and ".join(given) or "none"
-            raise problem("invalid-value", f"give exactly one predicate, not {said}", allowed=list(registered()))
+            fix = "make each of them an item of the list, with an id of its own" if given else None
+            message = f"give exactly one predicate, not {said}"
+            raise problem("invalid-value", message, allowed=list(registered()), fix=fix)
         return self
 
 
@@ -193,6 +196,17 @@ def _missing(name: str) -> str:
 
 
 Missing = Annotated[str, AfterValidator(_missing)]
+CATEGORIES = (
+    "basic", "geometry", "units", "kinematics", "multi", "sensors", "maps", "social", "rl", "bench", "edit", "i18n",
+    "ambiguous", "impossible", "adversarial", "planning", "recovery",
+)  # fmt: skip
+"""Abilities that cases test; a case may have others, too."""
+
+
+def _category(word: str) -> str:
+    if word not in CATEGORIES and any(is_slip_of(word, one) for one in CATEGORIES):
+        raise unknown("category", word, CATEGORIES)
+    return word
 
 
 class Case(Record):
@@ -204,10 +218,8 @@ class Case(Record):
     """Its subject, in a few words."""
     family: str = ""
     """Cases of one family share a base, so their results are not independent; default: the case itself."""
-    category: list[str]
-    """Abilities that it tests: ``basic``, ``geometry``, ``units``, ``kinematics``, ``multi``, ``sensors``, ``maps``,
-    ``social``, ``rl``, ``bench``, ``edit``, ``ambiguous``, ``impossible``, ``i18n``, ``adversarial``,
-    or the name of the skill whose task it is."""
+    category: list[Annotated[str, AfterValidator(_category)]]
+    """Abilities that it tests: some of :data:`CATEGORIES`, words of your own, or the skill whose task it is."""
     level: Annotated[int, Field(ge=1, le=4)]
     """1 is easy, 4 is hard."""
     language: str = "en"
@@ -265,21 +277,26 @@ class Case(Record):
     equivalent: str = ""
     """Other answers that are right, for reviewers."""
 
-    @model_validator(mode="after")
-    def _unique(self) -> Case:
-        names = [item.id for item in [*self.check, *(a for plan in self.episodes for a in plan.check)]]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise problem("duplicate-name", f"ids of assertions occur twice: {', '.join(twice)}")
-        last = 1 + len(self.turns)
-        late = next((item.id for item in self.check if (getattr(item.predicate, "turn", 0) or 0) > last), None)
-        if late is not None:
-            raise problem("out-of-range", f"{late!r} is about a later turn than the last one, {last}")
-        return self
+    def assertions(self) -> dict[tuple[int | str, ...], Any]:
+        """Place in the file → assertion, those about episodes last."""
+        lists: dict[tuple[int | str, ...], list[Any]] = {("assert",): self.check}
+        lists |= {("episodes", k, "assert"): plan.check for k, plan in enumerate(self.episodes)}
+        return {(*place, k): item for place, items in lists.items() for k, item in enumerate(items)}
 
     @model_validator(mode="after")
-    def _related(self) -> Case:
-        for item in [*self.check, *(a for plan in self.episodes for a in plan.check)]:
-            for what in unknown_words(item.predicate, self.select):
-                raise problem("unknown-value", f"{item.id}: {what}")
+    def _fit_together(self) -> Case:
+        wrong, taken, last = list[tuple[Any, Any]](), set[str](), 1 + len(self.turns)
+        for place, item in self.assertions().items():
+            if item.id in taken:
+                message = f"an assertion before it is called {item.id!r}, too"
+                wrong.append(((*place, "id"), problem("duplicate-name", message, fix="give one of them another id")))
+            if item.predicate.name == "edits" and item.predicate.base not in self.files:
+                wrong.append(((*place, "edits", "base"), unknown("file", item.predicate.base, list(self.files))))
+            if isinstance(turn := getattr(item.predicate, "turn", None), int) and turn > last:
+                late = problem("out-of-range", f"this turn is later than the last one, {last}", allowed=f"1 to {last}")
+                wrong.append(((*place, item.predicate.name, "turn"), late))
+            wrong += [((*place, *inner), error) for inner, error in unknown_words(item.predicate, self.select)]
+            taken.add(item.id)
+        if wrong:
+            raise problems_at("case", wrong)
         return self

@@ -59,7 +59,8 @@ def read_case(document: Document, rng: random.Random | None = None) -> tuple[Cas
             message = f"the file is called {name}, and its id is {data['id']!r}"
             problems.append(Diagnostic("invalid-value", "error", ("id",), message, fix=f"id: {name}"))
     problems = [*document.problems, *(located(item, document) for item in problems)]
-    return CASES.read(replace(document, data=data, problems=problems), {"selections": list(own)}), values
+    context = {"selections": list(own), "files": str(data.get("files") if isinstance(data, Mapping) else "")}
+    return CASES.read(replace(document, data=data, problems=problems), context), values
 
 
 def _explain(failure: ValidationError, document: Document, model: type[BaseModel]) -> list[Diagnostic]:

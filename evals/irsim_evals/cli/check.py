@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -29,6 +29,8 @@ _IDLE = {"empty_holds": "an empty world fulfils it", "unbroken": "no change of t
 """Meaning of what is reported of assertions that tell nothing."""
 _MAX_LISTED = 10
 """Largest number of case files for which each valid file gets a line of its own."""
+_MAX_PARENTS = 3
+"""Folders above a case file beside which its golds may lie: its own, the folder of cases, and that of a set in it."""
 _MAX_FAILED = 3
 """Failed assertions of a gold that are listed."""
 
@@ -50,9 +52,10 @@ def check(
     """Check case files without grading anything; the exit code is 2 if any of them is wrong."""
     store = store_of(cases_folder, golds_folder)
     paths = list(_paths(wanted, store))
+    own = golds_folder is None and cases_folder is None
     wrong = 0
     for path in paths:
-        problems, said = _look(path, store if grade else None)
+        problems, said = _look(path, (_beside(path, store) if own else store) if grade else None)
         right = not any(item.severity == "error" for item in problems)
         wrong += not right
         if json_output:
@@ -79,18 +82,25 @@ def _paths(wanted: Sequence[str] | None, store: Store) -> Iterator[Path]:
             yield path.relative_to(here) if path.is_relative_to(here) else path
 
 
+def _beside(path: Path, store: Store) -> Store:
+    """Where the golds of a file lie: for files of the store as it says, for others in the nearest folder of golds."""
+    if path.resolve().is_relative_to(store.cases.resolve()):
+        return store
+    places = [parent / store.golds.name for parent in path.resolve().parents[:_MAX_PARENTS]]
+    return store._replace(golds=next((place for place in places if place.is_dir()), places[len(places) > 1]))
+
+
 def _look(path: Path, store: Store | None) -> tuple[list[Diagnostic], str]:
     """The problems of a case file (with a store, also of its golds), and a summary of the file if it is valid."""
     try:
         instance = instance_of(load_path(path))
     except CaseError as error:
         return error.diagnostics, ""
-    case: Any = instance.case
-    count = len(case.check) + sum(len(plan.check) for plan in case.episodes)
-    said = f"case {case.id}, {plural(count, 'assertion')}"
+    said = f"case {instance.case.id}, {plural(len(instance.case.assertions()), 'assertion')}"
     if store is None:
         return [], said
-    return list(_problems_of_golds(instance, path, store)), f"{said}, {plural(len(golds_of(instance, store)), 'gold')}"
+    said += f", {plural(len(golds_of(instance, store)), 'gold')} in {store.golds / instance.case.id}"
+    return list(_problems_of_golds(instance, path, store)), said
 
 
 def _problems_of_golds(instance: Instance, path: Path, store: Store) -> Iterator[Diagnostic]:
@@ -101,8 +111,8 @@ def _problems_of_golds(instance: Instance, path: Path, store: Store) -> Iterator
 
     if len(golds) < MIN_GOLDS:
         message = f"{place} holds {plural(len(golds), 'right answer')}, and each case needs {MIN_GOLDS} different ones"
-        yield problem(message, f"write {place}/NAME/scenario.yaml")
-    right = True
+        yield problem(message, f"write {place}/NAME/scenario.yaml, or name another folder with --golds")
+    right = bool(golds)
     for gold in golds:
         verdict = grade_answer(instance, gold)
         if not verdict.strict:

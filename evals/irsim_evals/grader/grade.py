@@ -287,10 +287,9 @@ def _said(name: str, stage: Stage, passed: bool, expected: str, observed: str) -
 def _ungraded(instance: Instance, outcomes: list[Outcome]) -> list[Outcome]:
     """Every assertion that was not reached, as failed."""
     done = {outcome.assertion for outcome in outcomes}
-    case: Any = instance.case
     return [
         _outcome(item, Observation(False, "a scenario to look at", NOT_REACHED), False)
-        for item in [*case.check, *(one for plan in case.episodes for one in plan.check)]
+        for item in instance.case.assertions().values()
         if item.id not in done and item.when != "unbuilt"
     ]
 
@@ -302,13 +301,9 @@ def _verdict(
     built = any(item.assertion == "loads" and item.passed for item in outcomes)
     asks = "?" in answer.reply.replace("?`", "")
     return Verdict(
-        case=instance.case.id,
-        instance=instance.name,
-        strict=bool(outcomes) and not failed,
+        case=instance.case.id, instance=instance.name, strict=bool(outcomes) and not failed,
         rate=sum(item.passed for item in outcomes) / max(1, len(outcomes)),
         disposition="build" if built else "ask" if asks else "flag" if answer.reply else None,
         reached=next((stage for stage in STAGES if stage in failed), STAGES[-1]),
-        outcomes=outcomes,
-        seconds=round(seconds, 3),
-        files=files,
-    )
+        outcomes=outcomes, seconds=round(seconds, 3), files=files,
+    )  # fmt: skip

@@ -6,13 +6,15 @@ import colorsys
 import math
 from collections.abc import Iterable
 
-__all__ = ["discernible", "hue_of"]
+__all__ = ["HUES", "discernible", "hue_of"]
 
 _HUES = (
     (15, "red"), (42, "orange"), (70, "yellow"), (165, "green"), (195, "cyan"), (262, "blue"), (315, "purple"),
     (345, "pink"), (360, "red"),
 )  # fmt: skip
 """Upper end [degrees] of the part of the color circle that a name stands for."""
+HUES = ("red", "orange", "yellow", "green", "cyan", "blue", "purple", "pink", "brown", "white", "grey", "black")
+"""Everyday names of colors."""
 _MAX_GREY_SATURATION = 0.23
 """Saturation below which a color is white, grey or black."""
 _MAX_BLACK = 0.15
@@ -35,8 +37,7 @@ _WHITE = (0.9505, 1.0, 1.089)
 
 
 def hue_of(color: str | None) -> str | None:
-    """The everyday name of a color: ``red``, ``orange``, ``yellow``, ``green``, ``cyan``, ``blue``, ``purple``,
-    ``pink``, ``brown``, ``white``, ``grey`` or ``black``; None without a color.
+    """The everyday name of a color, one of :data:`HUES`; None without a color.
 
     Args:
         color: As ``#rrggbb``.

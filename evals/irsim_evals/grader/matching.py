@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WrapValidator, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WrapValidator, model_validator
+from pydantic_core import PydanticCustomError
 
 from irsim.bundled.templates.fill import evaluate
 from irsim.common.angles import wrap
 from irsim.common.arguments import is_number
+from irsim.options.base import problem, problems_at
+from irsim_evals.grader.words import unknown
 
 __all__ = [
-    "TOLERANCES", "UNITS", "Counted", "Kind", "Match", "Quantity", "Relation", "Seeds", "matches", "quantity", "show",
+    "TOLERANCES", "UNITS", "Counted", "Kind", "Match", "Place", "Quantity", "Relation", "Seeds", "checked", "fitting",
+    "matches", "quantity", "show",
 ]  # fmt: skip
 
 UNITS: dict[str, float] = {
@@ -29,20 +33,14 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\
 Kind = Literal["count", "length", "size", "angle", "heading", "axis", "speed", "rate", "time", "share", "name", "flag"]
 """The kind of quantity, which decides how closely values must agree."""
 TOLERANCES: dict[str, tuple[float, float]] = {
-    "count": (0.0, 0.0),
-    "length": (0.02, 0.05),
-    "size": (0.02, 0.01),
-    "angle": (0.0, math.radians(2)),
-    "heading": (0.0, math.radians(2)),
-    "axis": (0.0, math.radians(2)),
-    "speed": (0.02, 0.01),
-    "rate": (0.02, 0.01),
-    "time": (0.02, 0.001),
-    "share": (0.02, 0.005),
-}
+    "count": (0.0, 0.0), "length": (0.02, 0.05), "size": (0.02, 0.01), "share": (0.02, 0.005), "time": (0.02, 0.001),
+    "angle": (0.0, math.radians(2)), "heading": (0.0, math.radians(2)), "axis": (0.0, math.radians(2)),
+    "speed": (0.02, 0.01), "rate": (0.02, 0.01),
+}  # fmt: skip
 """Relative and absolute tolerance of each kind of number; the larger one applies."""
 MAX_QUANTITY = 1e9
 """Largest number of a case, in SI units."""
+Place = tuple[int | str, ...]
 _ROUGHLY = 0.2
 """Relative tolerance of `about`: what a prompt calls about, roughly or circa."""
 
@@ -158,7 +156,9 @@ class Match(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
-    also_called: ClassVar[dict[str, str]] = {"min": "ge", "max": "le", "equals": "eq", "least": "ge", "most": "le"}
+    also_called: ClassVar[dict[str, str]] = {
+        "min": "ge", "max": "le", "equals": "eq", "least": "ge", "most": "le", "gt": "ge", "lt": "le", "ne": "not",
+    }  # fmt: skip
     """Words of authors → keys, for messages."""
 
     eq: Annotated[Any, BeforeValidator(_value)] = None
@@ -223,6 +223,46 @@ class Match(BaseModel):
         if self.given is not None:
             parts.append("any" if self.given else "none")
         return " and ".join(parts) + (" or none" if self.or_none else "")
+
+
+def fitting(
+    said: dict[str, Match], kinds: Mapping[str, Kind], words: Mapping[str, Collection[str]], others: Kind = "name"
+) -> dict[str, Match]:
+    """Accepted values as they are, if each of them can be a value of what it is about.
+
+    Args:
+        said: Name → accepted values.
+        kinds: Name → kind.
+        words: Name → words that it can be; it can be any word if there are none.
+        others: Kind of the other names.
+
+    Raises:
+        ValidationError: A word is misspelt, or a text is not a number; with its place.
+    """
+    wrong: list[tuple[Place, PydanticCustomError]] = []
+    for name, match in said.items():
+        kind, known = kinds.get(name, others), words.get(name, ())
+        given: list[tuple[Place, Any]] = [((name, key), getattr(match, key)) for key in ("eq", "about")]
+        for key, values in (("in", match.among), ("not", match.unlike)):
+            given += [((name, key, k), value) for k, value in enumerate(values or ())]
+        for place, value in given:
+            texts = [one for one in (value if isinstance(value, list) else [value]) if isinstance(one, str | bool)]
+            if kind == "name":
+                if known and isinstance(value, str) and value not in known and not value.startswith("#"):  # a color
+                    wrong.append((place, unknown(name, value, known)))
+            elif kind == "flag" and not isinstance(value, bool | None):
+                wrong.append((place, problem("wrong-type", f"{name} is true or false", allowed=["true", "false"])))
+            elif kind != "flag" and texts:
+                message = f"{texts[0]!r} is not a number with a known unit"
+                wrong.append((place, problem("invalid-value", message, allowed=[unit for unit in UNITS if unit])))
+    if wrong:
+        raise problems_at("values", wrong)
+    return said
+
+
+def checked(kinds: Mapping[str, Kind], words: Mapping[str, Collection[str]]) -> AfterValidator:
+    """Metadata of accepted values by name, which must be fitting."""
+    return AfterValidator(lambda said: fitting(said, kinds, words))
 
 
 def matches(match: Match, value: Any, kind: Kind) -> bool:

@@ -8,14 +8,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+from irsim.options.registry import BEHAVIORS, KINEMATICS
 from irsim.scenario.resolve.body_size import top_speed
 from irsim_evals.grader.body import GradedBody
-from irsim_evals.grader.hues import hue_of
-from irsim_evals.grader.matching import Kind
+from irsim_evals.grader.hues import HUES, hue_of
+from irsim_evals.grader.matching import Kind, Match, checked
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.words import OneOf
 
-__all__ = ["PROPERTIES", "Property", "PropertyName", "value_of", "yaml_path"]
+__all__ = ["PROPERTIES", "SHAPES", "Having", "Property", "PropertyName", "value_of", "yaml_path"]
 
 _Value = Callable[[GradedScene, GradedBody], Any]
 
@@ -125,6 +126,19 @@ def _is_noisy(_: GradedScene, body: GradedBody) -> bool | None:
     return None if drive is None else bool(drive.noise and any(getattr(drive, "alpha", [1.0])))
 
 
+def _record(name: str) -> _Value:
+    return lambda _, body: getattr(body.record, name)
+
+
+def _is_convex(_: GradedScene, body: GradedBody) -> bool:
+    return bool(body.footprint.convex_hull.area <= body.footprint.area * (1 + 1e-6))
+
+
+def _view(name: str) -> _Value:
+    """A measure of its field of view; None where only a lidar has one, which sees nobody for the events of a run."""
+    return lambda _, body: getattr(body.record, name) if body.record.watches else None
+
+
 def _shows_fov(_: GradedScene, body: GradedBody) -> bool:
     return bool(body.record.plot.show_fov and body.record.fov is not None and body.record.fov_radius is not None)
 
@@ -166,12 +180,7 @@ PROPERTIES: dict[str, Property] = {
     "length": Property("size", "shape", _along(0), "Extent along its own heading; undefined for a disc."),
     "width": Property("size", "shape", _along(1), "Extent across its own heading; undefined for a disc."),
     "area": Property("size", "shape", lambda _, body: float(body.footprint.area), "Area of its outline in m²."),
-    "convex": Property(
-        "flag",
-        "shape",
-        lambda _, body: body.footprint.convex_hull.area <= body.footprint.area * (1 + 1e-6),
-        "Whether its outline has no dents.",
-    ),
+    "convex": Property("flag", "shape", _is_convex, "Whether its outline has no dents."),
     "x": Property("length", "state", lambda _, body: body.position[0], "Where it starts; of a static body its middle."),
     "y": Property("length", "state", lambda _, body: body.position[1], "Where it starts, as ``x``."),
     "x_share": Property("share", "state", _of_world(0), "``x`` as a share of the world: 0 is its left edge."),
@@ -188,16 +197,10 @@ PROPERTIES: dict[str, Property] = {
     "goal_direction": Property("heading", "goal", _to_goal, "Direction from its start to its last goal."),
     "goal_distance": Property("length", "goal", _straight, "Straight distance from its start to its last goal."),
     "way": Property("length", "goal", _way, "Length of the straight lines from its start over all goals."),
-    "threshold": Property(
-        "length", "goal_threshold", lambda _, body: body.record.goal_threshold, "Distance of arrival."
-    ),
-    "arrive_mode": Property(
-        "name", "arrive_mode", lambda _, body: body.record.arrive_mode, "``position`` or ``state``."
-    ),
+    "threshold": Property("length", "goal_threshold", _record("goal_threshold"), "Distance of arrival."),
+    "arrive_mode": Property("name", "arrive_mode", _record("arrive_mode"), "``position`` or ``state``."),
     "behavior": Property("name", "behavior", lambda _, body: body.behavior, "Name of its behavior, or its group's."),
-    "options": Property(
-        "name", "behavior", lambda _, body: sorted(body.options.items(), key=str), "Keys of its behavior."
-    ),
+    "options": Property("name", "behavior", lambda _, body: sorted(body.options.items()), "Keys of its behavior."),
     "local": Property("name", "behavior.local", _local, "Name of the behavior between corners of a planned path."),
     "avoids": Property("flag", "behavior", _avoids, "Whether its behavior avoids others."),
     "wander": Property("flag", "behavior.wander", _wanders, "Whether its goals are random."),
@@ -213,26 +216,35 @@ PROPERTIES: dict[str, Property] = {
     "turn_right": Property("rate", "vel_min", _range("turn_right"), "Greatest turn rate to the right."),
     "steer_left": Property("angle", "vel_max", _range("steer_left"), "Greatest steering angle to the left."),
     "steer_right": Property("angle", "vel_min", _range("steer_right"), "Greatest steering angle to the right."),
-    "acce": Property(
-        "speed", "acce", _acceleration(0), "Greatest change of its forward speed in a second, if limited."
-    ),
+    "acce": Property("speed", "acce", _acceleration(0), "Greatest change of its speed in a second, if limited."),
     "turn_acce": Property("rate", "acce", _acceleration(-1), "The same of its turn rate or steering angle."),
     "noise": Property("flag", "kinematics.noise", _is_noisy, "Whether its motion is noisy; None without a drive."),
     "top_speed": Property("speed", "vel_max", lambda _, body: float(top_speed(body.record)), "Greatest speed at all."),
     "sensors": Property("count", "sensors", lambda _, body: len(body.sensors), "How many sensors it has."),
-    "fov": Property("angle", "fov", lambda _, body: body.record.fov, "Angle of its field of view."),
-    "fov_radius": Property("length", "fov_radius", lambda _, body: body.record.fov_radius, "Reach of its ``fov``."),
+    "fov": Property("angle", "fov", _view("fov"), "Angle of its field of view, where that is given."),
+    "fov_radius": Property("length", "fov_radius", _view("fov_radius"), "Reach of its ``fov``."),
     "show_fov": Property("flag", "plot.show_fov", _shows_fov, "Whether its field of view is drawn."),
     "color": Property("name", "color", lambda _, body: body.color, "Its color as ``#rrggbb``."),
     "hue": Property("name", "color", lambda _, body: hue_of(body.color), "Its color in a word such as ``red``."),
     "tags": Property("name", "tags", lambda _, body: list(body.record.tags), "Its tags, a list."),
-    "group": Property("count", "group", lambda _, body: body.record.group, "Number of its group."),
+    "group": Property("count", "group", _record("group"), "Number of its group."),
 }
 """Name → property."""
+
+SHAPES = ("circle", "square", "rectangle", "line", "polygon", "compound")
+"""Values of ``shape``; a square is a rectangle, too."""
+_WORDS = {
+    "role": ("robot", "obstacle"), "kinematics": KINEMATICS.installed(), "shape": SHAPES, "hue": HUES,
+    "arrive_mode": ("position", "state"), "behavior": BEHAVIORS.installed(), "local": BEHAVIORS.installed(),
+    "color": ("#rrggbb",),
+}  # fmt: skip
+"""Property → words that it can be."""
 
 
 PropertyName = Annotated[str, OneOf("property", PROPERTIES, listed_by="irsim-evals properties explains them all")]
 """Name of a property that there is."""
+Having = Annotated[dict[PropertyName, Match], checked({name: one.kind for name, one in PROPERTIES.items()}, _WORDS)]
+"""Property → accepted values."""
 
 
 def value_of(scene: GradedScene, body: GradedBody, name: str) -> Any:

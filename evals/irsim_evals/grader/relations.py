@@ -6,15 +6,18 @@ import itertools
 from collections.abc import Collection, Iterator
 from typing import Any
 
+from pydantic_core import PydanticCustomError
+
 from irsim.bundled.templates.fill import evaluate
-from irsim.diagnostics.diagnostic import nearest
-from irsim_evals.grader.matching import Match, Relation
+from irsim.options.base import problem
+from irsim_evals.grader.matching import Match, Place, Relation
 from irsim_evals.grader.material import Material
 from irsim_evals.grader.predicates._base import Predicate
 from irsim_evals.grader.predicates.world import WORLD_KINDS, world_value
 from irsim_evals.grader.properties import PROPERTIES, value_of
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.selection import BUILT_IN
+from irsim_evals.grader.words import unknown
 
 __all__ = ["related", "unknown_words"]
 
@@ -43,28 +46,26 @@ def related(predicate: Any, material: Material, scene: GradedScene) -> Any:
     return predicate.model_copy(update=made) if made != given else predicate
 
 
-def unknown_words(predicate: Predicate, selections: Collection[str]) -> Iterator[str]:
-    """Messages about relations of a predicate that name unknown things or need a world that the predicate lacks."""
-    relations = list(_relations_in(dict(predicate)))
-    if relations and predicate.subject not in ("scene", "episode"):
-        yield f"{relations[0]}: an assertion about {predicate.subject} has no world whose properties it could name"
-    for selection, name in dict.fromkeys(pair for relation in relations for pair in relation.references):
-        of_world = selection == "world"
-        for kind, word, known in (
-            ("selection", selection, [*selections, *BUILT_IN, "world"]),
-            ("property of the world" if of_world else "property", name, [*(WORLD_KINDS if of_world else PROPERTIES)]),
-        ):
-            if word not in known:
-                near = nearest(word, known)
-                yield f"there is no {kind} {word!r}" + (f"; write {near}" if near else "")
+def unknown_words(predicate: Predicate, selections: Collection[str]) -> Iterator[tuple[Place, PydanticCustomError]]:
+    """Places and errors of relations that name unknown things or need a world that the predicate lacks."""
+    for place, relation in _relations_in(dict(predicate), (predicate.name,)):
+        if predicate.subject not in ("scene", "episode"):
+            message = f"an assertion about {predicate.subject} has no world whose properties it could name"
+            yield place, problem("invalid-value", message, fix="write a number")
+        for selection, name in relation.references:
+            kind, known = ("property of the world", WORLD_KINDS) if selection == "world" else ("property", PROPERTIES)
+            if selection not in (own := [*selections, *BUILT_IN, "world"]):
+                yield place, unknown("selection", selection, own)
+            elif name not in known:
+                yield place, unknown(kind, name, list(known), "irsim-evals properties explains them all")
 
 
-def _relations_in(value: Any) -> Iterator[Relation]:
+def _relations_in(value: Any, place: Place) -> Iterator[tuple[Place, Relation]]:
     if isinstance(value, Match):
-        yield from value.relations().values()
-    elif isinstance(value, (dict, list)):
-        for item in value.values() if isinstance(value, dict) else value:
-            yield from _relations_in(item)
+        yield from (((*place, key), relation) for key, relation in value.relations().items())
+    elif isinstance(value, (dict, list, Predicate)):
+        for key, item in enumerate(value) if isinstance(value, list) else dict(value).items():
+            yield from _relations_in(item, (*place, key))
 
 
 def _number(key: str, relation: Relation, material: Material, scene: GradedScene) -> float:

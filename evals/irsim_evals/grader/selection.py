@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict
 from irsim.options.registry import KINEMATICS
 from irsim_evals.grader.body import GradedBody
 from irsim_evals.grader.matching import Match, Quantity, matches
-from irsim_evals.grader.properties import PROPERTIES, PropertyName, value_of
+from irsim_evals.grader.properties import PROPERTIES, SHAPES, Having, value_of
 from irsim_evals.grader.scene import GradedScene
 from irsim_evals.grader.words import Listed, OneOf, Regex
 
@@ -23,9 +23,8 @@ _BUILT_IN: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 Selection = Annotated[str, OneOf("selection", tuple(_BUILT_IN), own="selections")]
 """Name of a selection: a built-in one, or one that the case has under ``select``."""
-_SHAPES = ("circle", "square", "rectangle", "line", "polygon", "compound")
 Drives = Annotated[list[Annotated[str, OneOf("drive", tuple(KINEMATICS.installed()))]], Listed()]
-Shapes = Annotated[list[Annotated[str, OneOf("shape", _SHAPES)]], Listed()]
+Shapes = Annotated[list[Annotated[str, OneOf("shape", SHAPES)]], Listed()]
 Selections = Annotated[list[Selection], Listed()]
 
 
@@ -52,7 +51,7 @@ class Selector(BaseModel):
     """Other selections that it belongs to."""
     beyond: Selections | None = None
     """Other selections that it does not belong to."""
-    having: dict[PropertyName, Match] = {}
+    having: Having = {}
     """Properties that it has."""
     any_of: list[Selector] = []
     """It meets at least one of these."""

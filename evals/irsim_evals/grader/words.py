@@ -8,21 +8,30 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from pydantic import AfterValidator
-from pydantic_core import CoreSchema, core_schema
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from irsim.diagnostics.diagnostic import nearest
 from irsim.options.base import problem
 from irsim.options.registry import BEHAVIORS
 
-__all__ = ["BehaviorName", "Listed", "OneOf", "Regex"]
+__all__ = ["BehaviorName", "Listed", "OneOf", "Regex", "unknown"]
 
 
 _MEANT = {
     "diameter": ("radius",), "drive": ("kinematics",), "speed": ("forward",), "max_speed": ("forward",),
     "number": ("count",), "size": ("radius",), "position": ("x",), "goal": ("goal_x",), "angle": ("heading", "opening"),
     "range": ("range_max",), "beams": ("number",), "walls": ("statics",), "people": ("movers",),
+    "acceleration": ("acce",), "validate": ("validate_scenario",), "run": ("run_episode",),
 }  # fmt: skip
 """Words of authors → what they mean, the first that is known where they are used."""
+
+
+def unknown(kind: str, word: object, known: Collection[str], listed_by: str | None = None) -> PydanticCustomError:
+    """The error that a word is none of the known ones; its fix is the nearest of them, or where they are explained."""
+    meant, alike = (_MEANT.get(one or "", ()) for one in (str(word), nearest(word, _MEANT)))
+    near = next((one for one in (*meant, nearest(word, known), *alike) if one in known), None)
+    fix = f"write {near}" if near else listed_by
+    return problem("unknown-value", f"there is no {kind} {word!r}", allowed=list(known), fix=fix, replace=near)
 
 
 @dataclass(frozen=True)
@@ -49,9 +58,7 @@ class OneOf:
         known = [*(further or {}).get(self.own, ()), *self.words]
         if word in known:
             return word
-        near = next((meant for meant in _MEANT.get(word, ()) if meant in known), None) or nearest(word, known)
-        fix = f"write {near}" if near else self.listed_by
-        raise problem("unknown-value", f"there is no {self.kind} {word!r}", allowed=known, fix=fix, replace=near)
+        raise unknown(self.kind, word, known, self.listed_by)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return core_schema.with_info_after_validator_function(self._check, handler(source))

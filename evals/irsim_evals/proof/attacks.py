@@ -66,8 +66,7 @@ def is_wrong(case: Case, scenes: tuple[GradedScene, GradedScene], changed: set[t
     """
     if any(pin.of == "world" and name in pin.facts for pin in case.free):
         return False
-    wanted: Any = [*case.check, *(item for plan in case.episodes for item in plan.check)]
-    if any(_states(case, scenes[0], item, ATTACKS[name], changed) for item in wanted):
+    if any(_states(case, scenes[0], item, ATTACKS[name], changed) for item in case.assertions().values()):
         return True
     if touches(case, scenes, changed, case.pins):
         return True

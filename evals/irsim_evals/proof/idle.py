@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer
@@ -30,9 +29,7 @@ def idle_assertions(instance: Instance, golds: Sequence[Answer]) -> Iterator[tup
         instance: The case.
         golds: Its right answers.
     """
-    case: Any = instance.case
-    wanted = [*case.check, *(item for plan in case.episodes for item in plan.check)]
-    left = [item.id for item in wanted if item.when != "unbuilt"]
+    left = [item.id for item in instance.case.assertions().values() if item.when != "unbuilt"]
     empty = _broken(instance, _EMPTY)
     yield from ((name, "empty_holds") for name in left if name not in empty)
     trials = [trial for gold in golds for trial in changes_of(instance, gold, Counter()) if trial.kind != "rewrite"]

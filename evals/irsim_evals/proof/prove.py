@@ -140,8 +140,7 @@ def _note(proof: Proof, trial: Trial, result: Any) -> None:
     proof.by_case[trial.case, trial.kind] += 1
     if verdict.strict != trial.right:
         proof.wrong.append((trial, verdict))
-    case: Any = trial.instance.case
-    said = {item.id: item.predicate.name for item in (*case.check, *(a for plan in case.episodes for a in plan.check))}
+    said = {item.id: item.predicate.name for item in trial.instance.case.assertions().values()}
     for outcome in verdict.outcomes:
         if outcome.assertion in second and outcome.observed != NOT_REACHED:
             predicate = said[outcome.assertion]

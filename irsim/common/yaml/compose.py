@@ -372,7 +372,9 @@ def syntax_problem(error: yaml.YAMLError, text: str, path: Path) -> Diagnostic:
         mark = error.problem_mark or error.context_mark
         if mark is not None:
             line, column = mark.line + 1, mark.column + 1
-        message = ", ".join(part for part in (error.context, error.problem) if part)
+        begin = error.context_mark.line + 1 if error.context_mark is not None else line
+        context = f"{error.context} from line {begin} on" if error.context and begin != line else error.context
+        message = ", ".join(part for part in (context, error.problem) if part)
     elif isinstance(error, yaml.reader.ReaderError):
         position = error.position if isinstance(error.position, int) else 0
         before = text[:position]

@@ -8,15 +8,17 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, model_validator
 
 from irsim.common.lazy import module_names
 from irsim_evals.grader.body import GradedBody
-from irsim_evals.grader.matching import Kind, matches, show
+from irsim_evals.grader.matching import Kind, Match, fitting, matches, show
 from irsim_evals.grader.outcome import Mark, Stage
 from irsim_evals.grader.selection import Selection
 
 if TYPE_CHECKING:
+    from typing_extensions import Self
+
     from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
     from irsim_evals.grader.scene import GradedScene
@@ -61,6 +63,12 @@ class Predicate(BaseModel):
     """Its subject."""
     name: ClassVar[str] = ""
     """Key under which cases use it."""
+
+    @model_validator(mode="after")
+    def _of_numbers(self) -> Self:
+        said = {name: value for name in self.model_fields_set if isinstance(value := getattr(self, name), Match)}
+        fitting(said, {}, {}, "count")
+        return self
 
 
 class ScenePredicate(Predicate):
@@ -212,11 +220,11 @@ def middle(bodies: Sequence[GradedBody]) -> tuple[float, float]:
 _REGISTERED: dict[str, type[Predicate]] = {}
 
 
-def register(name: str) -> Callable[[type[Any]], type[Any]]:
-    """Make a class the predicate of a name."""
+def register(name: str, stage: Stage | None = None) -> Callable[[type[Any]], type[Any]]:
+    """Make a class the predicate of a name, in a part of the funnel that is not the usual one of its subject."""
 
     def add(cls: type[Any]) -> type[Any]:
-        cls.name = name
+        cls.name, cls.stage = name, stage or cls.stage
         _REGISTERED[name] = cls
         return cls
 

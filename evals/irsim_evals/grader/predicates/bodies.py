@@ -10,10 +10,10 @@ import shapely
 from irsim.common.arguments import is_number
 from irsim.options.registry import SENSORS
 from irsim_evals.grader.hues import discernible
-from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
+from irsim_evals.grader.matching import Kind, Match, Quantity, checked, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register, summary
-from irsim_evals.grader.properties import PROPERTIES, PropertyName, value_of, yaml_path
+from irsim_evals.grader.properties import PROPERTIES, Having, PropertyName, value_of, yaml_path
 from irsim_evals.grader.words import OneOf
 
 if TYPE_CHECKING:
@@ -22,21 +22,10 @@ if TYPE_CHECKING:
     from irsim_evals.grader.scene import GradedScene
 
 SENSOR_KINDS: dict[str, Kind] = {
-    "name": "name",
-    "number": "count",
-    "range_max": "length",
-    "range_min": "size",
-    "angle_range": "angle",
-    "direction": "heading",
-    "mounted": "length",
-    "noise": "flag",
-    "std": "size",
-    "angle_std": "angle",
-    "has_velocity": "flag",
-    "motion_compensate": "flag",
-    "velocity_noise_std": "size",
-    "spacing": "angle",
-}
+    "name": "name", "number": "count", "range_max": "length", "range_min": "size", "angle_range": "angle",
+    "direction": "heading", "mounted": "length", "noise": "flag", "std": "size", "angle_std": "angle",
+    "has_velocity": "flag", "motion_compensate": "flag", "velocity_noise_std": "size", "spacing": "angle",
+}  # fmt: skip
 """Parameter → what it measures."""
 _KEYS = {key for name in SENSORS.installed() if (one := SENSORS.get(name)) for key in one.options.model_fields}
 SensorKey = Annotated[str, OneOf("parameter of a sensor", (*SENSOR_KINDS, *sorted(_KEYS - {*SENSOR_KINDS})))]
@@ -74,7 +63,7 @@ class Count(OfBodies, ScenePredicate):
 class Each(OfBodies, ScenePredicate):
     """Every body of a selection has some properties. An empty selection fails."""
 
-    has: dict[PropertyName, Match]
+    has: Having
     """Property → accepted values."""
     share: Quantity = 1.0
     """Share of the bodies that must have them."""
@@ -130,13 +119,11 @@ class Distinct(OfBodies, ScenePredicate):
         return kept
 
 
-@register("placed")
+@register("placed", "relations")
 class Placed(OfBodies, ScenePredicate):
     """Each row of a table describes exactly one body of a selection, and each of its bodies has a row."""
 
-    stage = "relations"
-
-    rows: list[dict[PropertyName, Match]]
+    rows: list[Having]
     """For each row: property → accepted values."""
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
@@ -179,7 +166,7 @@ def _assign(row: int, fits: list[list[int]], row_of: dict[int, int], tried: set[
 class Sensor(OfBodies, ScenePredicate):
     """Every body of a selection has sensors with some parameters. An empty selection fails."""
 
-    has: dict[SensorKey, Match] = {}
+    has: Annotated[dict[SensorKey, Match], checked(SENSOR_KINDS, {"name": SENSORS.installed()})] = {}
     """Parameter of the sensor as the simulator holds it → accepted values. ``direction`` is where its middle beam
     points relative to the body, ``mounted`` how far it sits from the origin of the body, ``spacing`` the angle between
     two beams."""
@@ -222,5 +209,4 @@ def parameter(sensor: dict[str, Any], key: str) -> Any:
         number, angle = sensor.get("number"), sensor.get("angle_range")
         gaps = (number or 0) - bool(sensor.get("endpoint", True))
         return angle / gaps if gaps > 0 and angle is not None else None
-    value = sensor.get(key)
-    return math.nan if value is None and key in ("range_max",) else value
+    return sensor.get(key)

@@ -36,13 +36,11 @@ _MAX_CELLS = 150_000
 """Greatest number of cells over the world."""
 
 
-@register("bottleneck")
+@register("bottleneck", "relations")
 class Bottleneck(OfBodies, ScenePredicate):
     """The width of the narrowest place that every body of a selection must pass on its way from its start over its
     goals, where it goes the widest way. How close it stands to a wall at its start or at a goal does not matter, and
     the edge of the world counts as a wall. An empty selection fails."""
-
-    stage = "relations"
 
     width: Match
     """Accepted widths of the narrowest place [m]; 0 where there is no way."""

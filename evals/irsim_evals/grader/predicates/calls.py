@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
+from pydantic import AfterValidator
+
+from irsim.cli.app import COMMANDS
+from irsim.common.lazy import module_names
 from irsim_evals.grader.matching import Match, matches
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register
+from irsim_evals.grader.words import unknown
 
 if TYPE_CHECKING:
     from irsim_evals.grader.artefact import Call
@@ -16,13 +21,26 @@ _WRITES = "write_*"
 """Names of the tools that write files."""
 _MAX_NAMED = 8
 """Number of calls that an observation names."""
+_FILES = ("list_files", "read_file", "write_file")
+"""Tools of an agent without a server; it calls the command line as ``irsim run``."""
+
+
+def _known(name: str) -> str:
+    tools = (*module_names("irsim_mcp.tools"), *_FILES, *(f"irsim {command}" for command in COMMANDS))
+    if not any(fnmatchcase(tool, name) for tool in tools):
+        raise unknown("tool", name, tools)
+    return name
+
+
+Tool = Annotated[str, AfterValidator(_known)]
+"""Name of a tool, in which ``*`` stands for any characters."""
 
 
 @register("calls")
 class Calls(AnswerPredicate):
     """Tools that the agent called, and whether they refused. An answer without a log of its calls fails."""
 
-    tool: str = "*"
+    tool: Tool = "*"
     """Name of the tools whose calls count, such as ``run_episode``; ``*`` stands for any characters."""
     when: Literal["always", "before_last_write", "after_last_write"] = "always"
     """Part of the log that counts: all of it, or what lies before or after the last call of a tool that writes a file
@@ -31,7 +49,7 @@ class Calls(AnswerPredicate):
     """Accepted numbers of these calls."""
     refused: Match | None = None
     """Accepted numbers of those among them that were refused or ended with an error."""
-    order: list[str] = []
+    order: list[Tool] = []
     """Names of tools that were called one after the other without being refused; other calls may lie between."""
 
     def observe(self, material: Material) -> Observation:

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import fnmatch
+import functools
 import re
 import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, ValidationInfo
 
 from irsim.common.records import ContentError, read_json
 from irsim.common.yaml.limits import YamlLimits
 from irsim.common.yaml.plain import read_plain_yaml
+from irsim.lookup.schema_walk import unknown_key
+from irsim.options.base import problem
+from irsim.scenario.model.json_schema import json_schema
 from irsim_evals.grader.matching import Match, matches, show
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register
 from irsim_evals.grader.programs import problems_in, run_program
-from irsim_evals.grader.words import Regex
+from irsim_evals.grader.words import Regex, unknown
 
 if TYPE_CHECKING:
     from irsim.results.validation import KeyChange, ScenarioDiff
@@ -100,21 +104,35 @@ def values_at(data: Any, path: str) -> list[Any]:
     return values
 
 
-@register("edits")
+_language = functools.cache(json_schema)
+
+
+def _known(path: str, info: ValidationInfo) -> str:
+    place, word, keys = unknown_key(_language(), path) or ("", "", [])
+    if word and not re.search(rf"\b{re.escape(word)}:", (info.context or {}).get("files", "")):  # a slip to be mended
+        raise unknown(f"key of {place or 'a scenario'}", word, keys)
+    if odd := re.match(r"(robot|obstacle)\.", path):
+        first, each = (path.replace(odd[1], f"{odd[1]}[{which}]", 1) for which in "0*")
+        raise problem("invalid-value", f"{path!r} does not say which {odd[1]}", fix=f"write {first}, or {each} for all")
+    return path
+
+
+KeyPath = Annotated[str, AfterValidator(_known)]
+"""Path of a key of a scenario."""
+
+
+@register("edits", "edits")
 class Edits(AnswerPredicate):
     """Differences between the file that was given and the file that was left: by key, and in the world it makes."""
-
-    stage = "edits"
 
     base: str = "scenario.yaml"
     """The file that was given."""
     file: str | None = None
     """The file that was left; default: the scenario of the answer."""
-    only: list[str] | None = None
+    only: list[KeyPath] | None = None
     """Paths that may change: ``robot[0].sensors[0].range_max``; what lies below one may change, too. ``*`` stands for
-    any index, and ``robot[0].vel_max[1]`` is one number of a list that stays as long as it was. A path with ``world:``
-    before it names a fact of the world instead of a key, as ``irsim diff`` does."""
-    must: dict[str, Match] = {}
+    any index, and ``robot[0].vel_max[1]`` is one number of a list that stays as long as it was."""
+    must: dict[KeyPath, Match] = {}
     """Path → accepted new values."""
     lines: Match | None = None
     """Accepted numbers of changed lines; removed and added lines count once each, a replaced line twice."""
@@ -222,11 +240,9 @@ def value_at(data: Any, path: str) -> Any:
     return data
 
 
-@register("program")
+@register("program", "behavior")
 class Program(AnswerPredicate):
     """Programs that only run scenarios end without an error and print something."""
-
-    stage = "behavior"
 
     pattern: str = "*.py"
     """Names of the programs; given ones are left out."""
@@ -255,12 +271,10 @@ class Program(AnswerPredicate):
         return Observation(not missing, expected, seen)
 
 
-@register("command")
+@register("command", "behavior")
 class Command(AnswerPredicate):
     """A command succeeds in the folder. It may run programs of the answer, so it is run only where
     ``irsim-evals grade --run-programs`` says so; elsewhere it has not been observed and does not hold."""
-
-    stage = "behavior"
 
     run: str
     """The command: ``python …``, or one of this project, such as ``irsim validate …``."""

@@ -84,11 +84,9 @@ def _width(scene: GradedScene, at: Point, heading: float) -> float:
     return _FAR if max(sides) >= _FAR else sum(sides)
 
 
-@register("corridor")
+@register("corridor", "relations")
 class Corridor(OfBodies, ScenePredicate):
     """Each body of a selection goes along a corridor: solid on both sides of the line from its start to its goal."""
-
-    stage = "relations"
 
     width: Match
     """Accepted free widths [m], measured across the line at each section."""
@@ -151,11 +149,9 @@ def _ends(body: GradedBody) -> tuple[Point, Point]:
     return (body.pose[0], body.pose[1]), (goal[0], goal[1])
 
 
-@register("doorway")
+@register("doorway", "relations")
 class Doorway(ScenePredicate):
     """A line of the world is solid but for some openings."""
-
-    stage = "relations"
 
     start: tuple[Quantity, Quantity]
     """One end of the line [m]."""
@@ -193,11 +189,9 @@ class Doorway(ScenePredicate):
         return Observation(passed, expected, observed or "no opening", marks=marks)
 
 
-@register("pocket")
+@register("pocket", "relations")
 class Pocket(OfBodies, ScenePredicate):
     """The straight line from start to goal leads into a pocket and hits its back."""
-
-    stage = "relations"
 
     width: Match
     """Accepted free widths inside [m]."""

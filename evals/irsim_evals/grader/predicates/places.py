@@ -35,11 +35,9 @@ _DIRECTIONS = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": -mat
 Toward = Annotated[str, OneOf("direction or selection", ("goal", *_DIRECTIONS, *BUILT_IN), own="selections")]
 
 
-@register("inside")
+@register("inside", "relations")
 class Inside(OfBodies, ScenePredicate):
     """Every body of a selection lies in a region. An empty selection fails."""
-
-    stage = "relations"
 
     what: Literal["position", "footprint", "goal"] = "position"
     """The part that lies in the region: its position, its whole footprint, or each of its goals."""
@@ -81,11 +79,9 @@ def _holds(box: tuple[float, float, float, float], point: tuple[float, float]) -
     return box[0] - 1e-6 <= point[0] <= box[2] + 1e-6 and box[1] - 1e-6 <= point[1] <= box[3] + 1e-6
 
 
-@register("near")
+@register("near", "relations")
 class Near(OfBodies, ScenePredicate):
     """Every body of a selection is at some distance from the bodies of another, or from a place."""
-
-    stage = "relations"
 
     to: Selection | None = None
     """Name of the other selection."""
@@ -142,11 +138,9 @@ class Near(OfBodies, ScenePredicate):
         return max(distances) if self.which == "farthest" else min(distances)
 
 
-@register("spacing")
+@register("spacing", "relations")
 class Spacing(OfBodies, ScenePredicate):
     """The smallest distance between any two bodies of a selection, of which there must be two."""
-
-    stage = "relations"
 
     what: Literal["position", "footprint", "goal"] = "position"
     """Ends of the distances: between positions, between the edges of footprints, or between last goals."""
@@ -173,11 +167,9 @@ class Spacing(OfBodies, ScenePredicate):
         return math.dist(a.position, b.position)
 
 
-@register("beside")
+@register("beside", "relations")
 class Beside(OfBodies, ScenePredicate):
     """Every body of a selection starts, or has its goal, on one side of another body's way."""
-
-    stage = "relations"
 
     way_of: Selection
     """Selection of one body, whose way leads from its start to its goal."""
@@ -210,11 +202,9 @@ class Beside(OfBodies, ScenePredicate):
         return judged(expected, distances, wrong, "state" if self.what == "start" else "goal")
 
 
-@register("on_circle")
+@register("on_circle", "relations")
 class OnCircle(OfBodies, ScenePredicate):
     """Every body of a selection stands on a circle."""
-
-    stage = "relations"
 
     center: tuple[Quantity, Quantity] | None = None
     """Middle of the circle [m]; default: the mean of the positions."""
@@ -268,11 +258,9 @@ class OnCircle(OfBodies, ScenePredicate):
         return Observation(not wrong, expected, observed, f"{bodies[0].entry}.state" if wrong else None, marks=marks)
 
 
-@register("facing")
+@register("facing", "relations")
 class Facing(OfBodies, ScenePredicate):
     """Every body of a selection looks somewhere. An empty selection fails."""
-
-    stage = "relations"
 
     toward: Toward | tuple[Quantity, Quantity]
     """``goal``, ``north``, ``east``, ``south``, ``west``, a place [m], or the name of a selection: its middle."""

@@ -37,11 +37,9 @@ def _known(item: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
     return {name: known[name].model_validate(item[name], context=info.context)}
 
 
-@register("every_scenario")
+@register("every_scenario", "facts")
 class EveryScenario(AnswerPredicate):
     """Every scenario file that the agent left is valid and fulfils some assertions about its world."""
-
-    stage = "facts"
 
     number: Match = Match(ge=1)
     """Accepted numbers of scenario files."""
@@ -74,11 +72,9 @@ def scenario_names(material: Material) -> list[str]:
     return sorted(name for name in scenarios_in(material.answer.files) if name not in material.given)
 
 
-@register("comparison")
+@register("comparison", "relations")
 class Comparison(AnswerPredicate):
     """Behaviors are compared fairly: with the same scenarios but for the behavior, the same seeds, the same horizon."""
-
-    stage = "relations"
 
     robots: list[Counted]
     """Numbers of robots; there is at least one scenario for each."""

@@ -21,11 +21,9 @@ _SAME = 1e-9
 """Distance [m] between two places that counts as none."""
 
 
-@register("varies")
+@register("varies", "relations")
 class Varies(OfBodies, SeedsPredicate):
     """The bodies of a selection start elsewhere with each seed, and with the same seed where they did before."""
-
-    stage = "relations"
 
     seeds: Seeds = [0, 1, 2, 3, 4]
     """Seeds that are compared."""
@@ -79,11 +77,9 @@ def _fixed(a: Any, b: Any) -> bool:
     return bool(starts.min() <= _SAME or (goals.size and goals.max(axis=1).min() <= _SAME))
 
 
-@register("overlap_free")
+@register("overlap_free", "sane")
 class OverlapFree(SeedsPredicate):
     """Nothing overlaps at the start in a share of the seeds; a seed without a free place counts as an overlap."""
-
-    stage = "sane"
 
     seeds: Counted = 20
     """Number of seeds, from 0 on."""

@@ -9,6 +9,7 @@ import numpy as np
 from irsim.options.registry import SENSORS
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches
 from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, measured, register
+from irsim_evals.grader.selection import Selection
 from irsim_evals.grader.words import OneOf
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ class Sees(OfBodies, EpisodePredicate):
     at_start = True
     looks = True
 
-    what: str | None = None
+    what: Selection | None = None
     """Name of the selection of what may be seen; default: everything, the map and the walls of the world included."""
     by: Annotated[str, OneOf("sensor", (*SENSORS.installed(), "fov"))] | None = None
     """Kind of the sensor, such as ``lidar2d``, or ``fov`` for the field of view; default: any."""

@@ -19,11 +19,9 @@ if TYPE_CHECKING:
     from irsim_evals.grader.scene import GradedScene
 
 
-@register("ways")
+@register("ways", "relations")
 class Ways(OfBodies, ScenePredicate):
     """The straight lines from start to last goal of any two bodies of a selection, of which there must be two."""
-
-    stage = "relations"
 
     angle: Match | None = None
     """Accepted angles between the directions of two ways [rad]: 0 for the same direction, π for opposite ones."""
@@ -66,11 +64,9 @@ def _mark(body: GradedBody) -> Mark:
     return Mark(points=[list(point) for point in way_of(body).coords], text=body.name)
 
 
-@register("line_of_sight")
+@register("line_of_sight", "relations")
 class LineOfSight(OfBodies, ScenePredicate):
     """Whether the straight line from each start to the goal is free. An empty selection fails."""
-
-    stage = "relations"
 
     clear: bool
     """Whether the line is free of everything solid, or not."""
@@ -85,11 +81,9 @@ class LineOfSight(OfBodies, ScenePredicate):
         return judged(expected, clear, wrong, "goal", said="clear for ", marks=[_mark(body) for body, _ in wrong])
 
 
-@register("reachable")
+@register("reachable", "relations")
 class Reachable(OfBodies, ScenePredicate):
     """Every body of a selection can get from its start to each of its goals, on a grid of inflated obstacles."""
-
-    stage = "relations"
 
     size: Literal["inner", "outer"] = "inner"
     """Disc that stands for the body: the largest one inside of it, or the smallest one round it."""

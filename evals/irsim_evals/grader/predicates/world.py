@@ -10,7 +10,10 @@ import shapely
 from pydantic import model_validator
 
 from irsim.objects.describe import grid_values
-from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
+from irsim.options.registry import MAPS
+from irsim.scenario.model.lookup import literals
+from irsim.scenario.model.world import WorldModel
+from irsim_evals.grader.matching import Kind, Match, Quantity, checked, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register
 from irsim_evals.grader.words import OneOf
@@ -26,6 +29,9 @@ WORLD_KINDS: dict[str, Kind] = {
     "map": "name", "map_file": "name", "map_cell": "size", "map_share": "share", "map_seed": "count",
 }  # fmt: skip
 """Property of the world → what it measures."""
+_CHOICES = ("control_mode", "collision_mode", "step_mode", "boundary")
+_WORDS = {"map": MAPS.installed()} | {name: literals(WorldModel.model_fields[name]) for name in _CHOICES}
+"""Property of the world → words that it can be."""
 WorldProperty = Annotated[str, OneOf("property of the world", tuple(WORLD_KINDS))]
 _EDGES = ("left", "bottom", "right", "top")
 _KEYS = {"left": "offset", "bottom": "offset", "right": "width", "top": "height"} | dict.fromkeys(
@@ -41,7 +47,7 @@ class World(ScenePredicate):
     is the path of its picture as written, ``map_cell`` the longer side of its cells [m], ``map_share`` the share of
     them that is occupied, ``map_seed`` the seed of the map itself."""
 
-    has: dict[WorldProperty, Match]
+    has: Annotated[dict[WorldProperty, Match], checked(WORLD_KINDS, _WORDS)]
     """Property → accepted values."""
 
     @classmethod
@@ -91,12 +97,10 @@ def _occupied_share(scene: GradedScene) -> float | None:
     return float(np.mean(np.asarray(grid_values(scene.env.simulation)) > 50))  # drawn anew for each scene
 
 
-@register("plan")
+@register("plan", "relations")
 class Plan(ScenePredicate):
     """Everything solid in the world lies where a drawing has it, and nowhere else, up to a tolerance of the outlines.
     It does not matter whether it is made of walls, of one body or of a map, or whether the world has walls round it."""
-
-    stage = "relations"
 
     sketch: str = ""
     """A drawing in characters; the first line is the top."""

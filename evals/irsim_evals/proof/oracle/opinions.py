@@ -86,6 +86,7 @@ class _Look:
         logging.disable(logging.WARNING)
         self.env: Any = irsim.make(str(path), display=False, seed=seed, log_level="ERROR")
         self.data, self.selectors = data, selectors
+        self.settings: dict[str, Any] = data.get("world") or {}
         self.things = [*self._section("robot", self.env.robot_list), *self._section("obstacle", self.env.obstacle_list)]
 
     def _section(self, section: str, views: list[Any]) -> list[Thing]:
@@ -157,14 +158,11 @@ class _Look:
         return _accepts(said.number, len(self.of(said.of)), "count")
 
     def world(self, said: Any, _: float) -> bool:
-        world = self.data.get("world") or {}
-        offset = world.get("offset") or [0.0, 0.0]
-        known = {
-            "width": world.get("width", 10), "height": world.get("height", 10), "left": offset[0], "bottom": offset[1],
-            "step_time": world.get("step_time", 0.1),
-        }  # fmt: skip
+        left, bottom = self.settings.get("offset") or [0.0, 0.0]
+        known = {"width": 10, "height": 10, "step_time": 0.1, "left": left, "bottom": bottom}
+        known |= {name: self.settings[name] for name in ("width", "height", "step_time") if name in self.settings}
         kinds = {"step_time": "time"}
-        if set(said.has) - set(known) or "obstacle_map" in world:
+        if set(said.has) - set(known) or "obstacle_map" in self.settings:
             raise _Unknown
         return all(_accepts(match, known[name], kinds.get(name, "length")) for name, match in said.has.items())
 
@@ -207,9 +205,8 @@ class _Look:
         raise _Unknown
 
     def inside(self, said: Any, _: float) -> bool:
-        world = self.data.get("world") or {}
-        x0, y0 = world.get("offset") or [0.0, 0.0]
-        width, height = world.get("width"), world.get("height")
+        x0, y0 = self.settings.get("offset") or [0.0, 0.0]
+        width, height = self.settings.get("width"), self.settings.get("height")
         if not (isinstance(width, (int, float)) and isinstance(height, (int, float))) or said.what == "footprint":
             raise _Unknown
         a, b, c, d = said.shares or (0.0, 0.0, 1.0, 1.0)
@@ -261,7 +258,7 @@ class _Look:
         return bool(distances) and _accepts(said.distance, min(distances), "length")
 
     def _solids(self) -> list[Thing]:
-        if (self.data.get("world") or {}).get("obstacle_map") is not None:
+        if self.settings.get("obstacle_map") is not None:
             raise _Unknown
         return self.of("solids")
 
@@ -278,9 +275,8 @@ class _Look:
         things = self.of(said.of)
         if not said.possible or not all(self._goals(thing) for thing in things):
             raise _Unknown
-        world = self.data.get("world") or {}
-        x0, y0 = world.get("offset") or [0.0, 0.0]
-        bounds = (x0, y0, x0 + world.get("width", 10), y0 + world.get("height", 10))
+        x0, y0 = self.settings.get("offset") or [0.0, 0.0]
+        bounds = (x0, y0, x0 + self.settings.get("width", 10), y0 + self.settings.get("height", 10))
         verdicts = []
         for thing in things:
             if thing.radius is None:
@@ -296,7 +292,7 @@ class _Look:
         return bool(verdicts) and all(verdicts)
 
     def _steps(self, seconds: float) -> int:
-        return round(seconds / float((self.data.get("world") or {}).get("step_time", 0.1)))
+        return round(seconds / float(self.settings.get("step_time", 0.1)))
 
     def arrive(self, said: Any, seconds: float) -> bool:
         things = self.of(said.of)
@@ -314,8 +310,7 @@ class _Look:
         things = self.of(said.of)
         if not things:
             return False
-        world = self.data.get("world") or {}
-        if world.get("obstacle_map") is not None or world.get("boundary") == "walls":
+        if self.settings.get("obstacle_map") is not None or self.settings.get("boundary") == "walls":
             raise _Unknown
         others = self.things
         if any(thing.entry.get("unobstructed") for thing in others):
