@@ -62,10 +62,9 @@ class Results(Record):
 
 def trial_of(instance: Instance, verdict: Verdict, arm: str, **more: Any) -> Trial:
     """A trial with what the case says about it, and perhaps its ``number``, ``model``, ``reply`` and ``ended``."""
-    case = instance.case
-    turns = [instance.prompt, *case.turns]
+    case, prompt = instance.case, "\n\n".join(request.strip() for request in instance.requests)
     return Trial(
-        arm=arm, title=case.title, prompt="\n\n".join(turn.strip() for turn in turns), category=case.category,
+        arm=arm, title=case.title, prompt=prompt, category=case.category,
         level=case.level, family=case.family or case.id, hard=case.hard, verdict=verdict, **more,
     )  # fmt: skip
 

@@ -19,14 +19,14 @@ import pytest
 from irsim.lookup.full_text import bm25, words_of
 from irsim_evals.baselines.arms import BASELINES, answers
 from irsim_evals.baselines.repair import answers as by_repair
-from irsim_evals.baselines.retrieval import Task, best_template, slots
+from irsim_evals.baselines.retrieval import best_template, slots
 from irsim_evals.cases.store import Instance, case_ids, case_of
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.harness.arms import Side
 from irsim_evals.report.load import load_results
 from irsim_evals.results import Trial, trial_of
-from tests.evals.conftest import EVALS, irsim_evals, refusal
+from tests.evals.conftest import EVALS, irsim_evals, made_up, refusal
 
 SNAPSHOT: dict[str, dict[str, bool]] = json.loads(
     Path(__file__).with_name("baselines.json").read_text(encoding="utf-8")
@@ -187,7 +187,7 @@ robot:
 
 def test_repair_mends_a_given_file_with_an_error_and_leaves_others_alone():
     whole = GIVEN.replace("behaviour", "behavior")
-    broken, kept = by_repair(Task("Have a look.", (), {"a.yaml": text}) for text in (GIVEN, whole))
+    broken, kept = by_repair(made_up(files={"a.yaml": text}) for text in (GIVEN, whole))
     assert broken.files == {"a.yaml": whole}
     assert kept.files == {"a.yaml": whole}
     assert "behaviour" in broken.reply
@@ -198,5 +198,5 @@ def test_repair_gives_up_numbers_with_which_robots_do_not_arrive(monkeypatch):
     monkeypatch.setattr(
         "irsim_evals.baselines.repair.written", lambda task, filled=True: (written[filled], f"filled: {filled}")
     )
-    (one,) = by_repair([Task("A robot.")])
+    (one,) = by_repair([made_up()])
     assert (one.files, one.reply) == ({"scenario.yaml": written[False]}, "filled: False")

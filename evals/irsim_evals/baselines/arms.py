@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any
 
 from irsim_evals.baselines import repair, retrieval
-from irsim_evals.baselines.retrieval import Task, task_of
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.limited import grade_all
@@ -16,12 +15,12 @@ from irsim_evals.results import Trial, trial_of
 __all__ = ["BASELINES", "answers", "run_baseline"]
 
 
-def _null(task: Task) -> Answer:
+def _null(instance: Instance) -> Answer:
     """An empty world, whatever is asked: a case that it passes would ask for nothing."""
-    return Answer("null", {**(task.files or {}), "scenario.yaml": "world: {width: 10, height: 10}\n"}, "Done.")
+    return Answer("null", {**instance.case.files, "scenario.yaml": "world: {width: 10, height: 10}\n"}, "Done.")
 
 
-BASELINES: dict[str, Callable[[Iterable[Task]], Iterable[Answer]]] = {
+BASELINES: dict[str, Callable[[Iterable[Instance]], Iterable[Answer]]] = {
     "null": partial[Any](map, _null),
     "retrieval": partial[Any](map, retrieval.answer),
     "repair": repair.answers,
@@ -31,7 +30,7 @@ BASELINES: dict[str, Callable[[Iterable[Task]], Iterable[Answer]]] = {
 
 def answers(name: str, instances: Iterable[Instance]) -> Iterator[Answer]:
     """The answers of a baseline to some cases, in their order."""
-    return iter(BASELINES[name](task_of(instance) for instance in instances))
+    return iter(BASELINES[name](instances))
 
 
 def run_baseline(

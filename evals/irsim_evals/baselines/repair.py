@@ -16,7 +16,8 @@ from irsim.bundled.templates.fill import parse_path
 from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.model.lookup import at
 from irsim.scenario.yaml.rewrite import rewrite
-from irsim_evals.baselines.retrieval import Task, written
+from irsim_evals.baselines.retrieval import written
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer, scenarios_in
 
 if TYPE_CHECKING:
@@ -28,28 +29,28 @@ _ROUNDS = 6
 """Rounds of validating and fixing."""
 
 
-def answers(tasks: Iterable[Task]) -> Iterator[Answer]:
+def answers(instances: Iterable[Instance]) -> Iterator[Answer]:
     """The answers to some requests, with one server for all."""
     from irsim_evals.baselines.server import started
 
     with started() as server:
-        for task in tasks:
-            yield _answer(server, task)
+        for instance in instances:
+            yield _answer(server, instance)
 
 
-def _answer(server: Server, task: Task) -> Answer:
-    files = dict(task.files or {})
+def _answer(server: Server, instance: Instance) -> Answer:
+    files = dict(instance.case.files)
     name = next(iter(scenarios_in(files)), None)
     if name is not None:
         files[name], fixed = _mended(server, files[name])
         reply = f"Changed in {name}: {'; '.join(fixed)}." if fixed else f"{name} has no error: nothing changed."
     else:
-        text, reply = written(task)
+        text, reply = written(instance)
         run = server.run(text)
         if run is None or any(robot["outcome"] != "success" for robot in run["robots"]):
-            text, reply = written(task, filled=False)
+            text, reply = written(instance, filled=False)
         files["scenario.yaml"] = text
-    return Answer("repair", files, reply, tuple(reply for _ in task.requests))
+    return Answer("repair", files, reply, tuple(reply for _ in instance.requests))
 
 
 def _mended(server: Server, text: str) -> tuple[str, list[str]]:

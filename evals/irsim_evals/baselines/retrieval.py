@@ -9,15 +9,14 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 from irsim.bundled.templates import Parameter, Template, TemplateError, fill, load_all
 from irsim.lookup.full_text import bm25, words_of
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer
 
-__all__ = ["Task", "answer", "best_template", "slots", "task_of", "written"]
+__all__ = ["answer", "best_template", "slots", "written"]
 
 _SILENT = {
     "a", "an", "and", "are", "as", "at", "be", "by", "each", "every", "for", "from", "has", "have", "in", "into", "is",
@@ -37,41 +36,16 @@ _UNIT = "|".join(sorted((re.escape(unit) for unit in _UNITS if unit), key=len, r
 _NUMBER = re.compile(rf"(?<![\w.,])(\d+(?:\.\d+)?)(?:[\s-]?({_UNIT})(?![\w/]))?(?![\w.,]\d)")
 
 
-@dataclass(frozen=True)
-class Task:
-    """The part of a case that an agent sees.
-
-    Attributes:
-        prompt: The request to the agent.
-        turns: Messages of the user after each reply.
-        files: The files that the folder starts with: name → text.
-    """
-
-    prompt: str
-    turns: tuple[str, ...] = ()
-    files: Mapping[str, str] | None = None
-
-    @property
-    def requests(self) -> tuple[str, ...]:
-        """All that the user says, one text for each turn."""
-        return (self.prompt, *self.turns)
-
-
-def task_of(instance: Instance) -> Task:
-    """The part of an instance that an agent sees."""
-    return Task(instance.prompt, tuple(instance.case.turns), dict(instance.case.files))
-
-
-def answer(task: Task) -> Answer:
+def answer(instance: Instance) -> Answer:
     """The template that fits best, filled with numbers of the request."""
-    text, reply = written(task)
-    files = {**(task.files or {}), "scenario.yaml": text}
-    return Answer("retrieval", files, reply, tuple(reply for _ in task.requests))
+    text, reply = written(instance)
+    files = {**instance.case.files, "scenario.yaml": text}
+    return Answer("retrieval", files, reply, tuple(reply for _ in instance.requests))
 
 
-def written(task: Task, filled: bool = True) -> tuple[str, str]:
+def written(instance: Instance, filled: bool = True) -> tuple[str, str]:
     """The template that fits best, ``filled`` with numbers of the request, and the reply that goes with it."""
-    request = "\n".join(task.requests)
+    request = "\n".join(instance.requests)
     template = best_template(request)
     values = slots(template, request) if filled else {}
     try:

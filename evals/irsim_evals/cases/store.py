@@ -39,6 +39,11 @@ class Instance:
     name: str
     prompt: str
 
+    @property
+    def requests(self) -> tuple[str, ...]:
+        """All that the user says, one text for each turn."""
+        return (self.prompt, *self.case.turns)
+
 
 def instance_of(raw: Mapping[str, Any] | Document, seed: int | None = None) -> Instance:
     """An instance of a case file.
@@ -143,7 +148,7 @@ def write_given(folder: Path, instance: Instance) -> None:
 
 
 def _gold(path: Path, instance: Instance) -> Answer:
-    left = from_folder(path, 1 + len(instance.case.turns))
+    left = from_folder(path, len(instance.requests))
 
     def filled(text: str) -> str:
         return str(substitute(text + "\0", instance.values)).rstrip("\0")  # a text, also if it is one expression

@@ -104,7 +104,7 @@ def _write(output: Path, arm: str, works: list[_Work], verdicts: Mapping[Path, V
 
 def _reply(instance: Instance, folder: Path) -> str:
     try:
-        return from_folder(folder, turns=1 + len(instance.case.turns)).reply
+        return from_folder(folder, turns=len(instance.requests)).reply
     except (ArtefactError, OSError):  # the verdict says so already
         return ""
 

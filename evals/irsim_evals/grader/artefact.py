@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field, ValidationError
 
 from irsim.common.hashing import file_digest
 from irsim.common.records import ContentError, FileError, read_bytes, read_json
@@ -50,19 +50,15 @@ _MAX_STEPS = 200
 """Number of calls that results keep."""
 
 
-class Call(BaseModel):
+class Call(Step):
     """A call of a tool: a line of the log, as far as it matters here."""
 
     model_config = ConfigDict(extra="ignore", strict=True)
 
-    tool: str
-    """Name of the tool."""
     error: bool
     """Whether it was refused, or ended with an error."""
     tokens: Annotated[int, Field(ge=0, le=10**9)]
     """Tokens of its arguments and its answer."""
-    codes: list[str] = []
-    """Codes of the errors that the answer names."""
 
 
 @dataclass(frozen=True)

@@ -87,7 +87,7 @@ def grade_folder(instance: Instance, folder: Path, calls: Path | None = None, ru
         run_programs: Whether commands of the case may run programs of the answer, with the rights of this process.
     """
     try:
-        answer = from_folder(folder, turns=1 + len(instance.case.turns))
+        answer = from_folder(folder, turns=len(instance.requests))
         answer = replace(answer, calls=calls_of(calls or folder / CALLS_FILE)[0])
     except (ArtefactError, OSError) as error:
         verdict = _failed(instance, None, str(error))

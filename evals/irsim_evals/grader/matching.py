@@ -268,26 +268,27 @@ def checked(kinds: Mapping[str, Kind], words: Mapping[str, Collection[str]]) -> 
 def matches(match: Match, value: Any, kind: Kind) -> bool:
     """Whether a value is accepted. A missing value (None) is accepted only by ``given: false``, ``eq: null`` and
     ``or_none``."""
-    if match.or_none and (value is None or value == []):
+    missing = value is None or value == []
+    if match.or_none and missing:
         return True
-    if match.given is not None and match.given != (value is not None and value != []):
+    if match.given is not None and match.given == missing:
         return False
     if match.given is False or ("eq" in match.model_fields_set and match.eq is None):
-        return value is None or value == []
-    if value is None:
-        return False
-    if "eq" in match.model_fields_set and not _same(value, match.eq, kind, match.tol):
-        return False
-    if match.about is not None and not _near(value, match.about):
-        return False
-    if match.among is not None and not any(_same(value, item, kind, match.tol) for item in match.among):
-        return False
-    if match.unlike is not None and any(_same(value, item, kind, match.tol) for item in match.unlike):
-        return False
+        return missing
     slack = 1e-9 if kind == "count" else 1e-6
-    if match.ge is not None and not (_is_number(value) and value >= match.ge - slack):
-        return False
-    return match.le is None or (_is_number(value) and value <= match.le + slack)
+
+    def same(wanted: Any) -> bool:
+        return _same(value, wanted, kind, match.tol)
+
+    return (
+        value is not None
+        and ("eq" not in match.model_fields_set or same(match.eq))
+        and (match.about is None or _near(value, match.about))
+        and (match.among is None or any(map(same, match.among)))
+        and (match.unlike is None or not any(map(same, match.unlike)))
+        and (match.ge is None or (_is_number(value) and value >= match.ge - slack))
+        and (match.le is None or (_is_number(value) and value <= match.le + slack))
+    )
 
 
 def show(value: Any) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -67,7 +67,7 @@ def _depth(a: GradedBody, b: GradedBody) -> float:
     return 0.0
 
 
-def check_scene(material: Material, scene: GradedScene, *, overlap: bool = True) -> list[Outcome]:
+def check_scene(material: Material, scene: GradedScene, *, overlap: bool = True) -> Iterator[Outcome]:
     """Everything lies in the world and is there in time, may stand still, is solid unless it may be passable, and
     nothing overlaps."""
     x0, y0, x1, y1 = scene.bounds
@@ -83,16 +83,16 @@ def check_scene(material: Material, scene: GradedScene, *, overlap: bool = True)
     out = starts + goals
     marks = [Mark(points=[list(point)], text=body.name) for body, point in out]
     key = "state" if starts else "goal"
-    outcomes = [_outcome("inside-world", "everything lies in the world", out, "all", key, scene.seed, marks)]
+    yield _outcome("inside-world", "everything lies in the world", out, "all", key, scene.seed, marks)
     restless = [
         (body, f"never goes slower than {body.slowest:g} m/s")
         for body in scene.bodies
         if not body.static and body.slowest > 0
     ]
-    outcomes.append(_outcome("can-stand", "every body may stand still", restless, "all", "vel_min", scene.seed))
+    yield _outcome("can-stand", "every body may stand still", restless, "all", "vel_min", scene.seed)
     unsolid = [(body, "others pass through it") for body in material.solid_bodies(scene) if body.passable]
     expected = "nothing is passable that the prompt does not make so"
-    outcomes.append(_outcome("solid", expected, unsolid, "nothing", "unobstructed", scene.seed))
+    yield _outcome("solid", expected, unsolid, "nothing", "unobstructed", scene.seed)
     may = {body.index for name in material.late for body in material.bodies(scene, name)}
     late = [
         (body, f"comes after {body.record.appear_time:g} s")
@@ -100,11 +100,10 @@ def check_scene(material: Material, scene: GradedScene, *, overlap: bool = True)
         if body.record.appear_time > (0 if body.static and body.index not in may else _longest_delay(scene))
     ]
     expected = "what never moves is there from the start, and what moves comes before the end"
-    outcomes.append(_outcome("present", expected, late, "all", "appear_time", scene.seed))
+    yield _outcome("present", expected, late, "all", "appear_time", scene.seed)
     if overlap:
         both = [(body, f"overlaps {other}") for body, other in overlaps(material, scene)]
-        outcomes.append(_outcome("no-overlap", "nothing overlaps at the start", both, "nothing", "state", scene.seed))
-    return outcomes
+        yield _outcome("no-overlap", "nothing overlaps at the start", both, "nothing", "state", scene.seed)
 
 
 def _longest_delay(scene: GradedScene) -> float:

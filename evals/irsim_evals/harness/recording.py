@@ -11,7 +11,7 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, Literal
 
@@ -19,9 +19,8 @@ from pydantic import ValidationError
 
 import irsim
 from irsim.common.hashing import digest
-from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError, PickledWhole
-from irsim_evals.cases.store import Instance, all_case_ids, case_of, given_pictures
+from irsim_evals.cases.store import Instance, given_pictures
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.limited import grade_answer
@@ -155,7 +154,7 @@ def write_recording(recording: Recording, path: Path) -> None:
     """Write a file of JSON lines."""
     path.parent.mkdir(parents=True, exist_ok=True)
     lines = [recording.header, *recording.attempts]
-    path.write_text("".join(f"{line.model_dump_json(exclude_defaults=False)}\n" for line in lines), encoding="utf-8")
+    path.write_text("".join(f"{line.model_dump_json()}\n" for line in lines), encoding="utf-8")
 
 
 def read_recording(path: Path) -> Recording:
@@ -196,32 +195,17 @@ def find_recording(path: Path, arm: str) -> Recording:
     return recording
 
 
-def grade_recording(recording: Recording, instances: Sequence[Instance] | None = None) -> list[Trial]:
-    """Grade the recorded files of some instances, or all, with the grader of today, without tools and a model.
+def grade_recording(recording: Recording, instances: Iterable[Instance]) -> list[Trial]:
+    """Grade the recorded files of some instances with the grader of today, without tools and a model.
 
     Raises:
-        ArgumentError: A case has changed or is not known, or an instance was not recorded.
+        ArgumentError: A case has changed, or an instance was not recorded.
     """
-    if instances is None:
-        keys = dict.fromkeys((attempt.case, attempt.instance) for attempt in recording.attempts)
-        instances = [_named(case, instance) for case, instance in keys]
     return [
         _graded(attempt, instance, recording.header.model)
         for instance, attempts in matched(recording, instances)
         for attempt in attempts
     ]
-
-
-def _named(case: str, instance: str) -> Instance:
-    """The instance that a recording names."""
-    fix = "list the cases with irsim-evals cases, or record again"
-    if case not in all_case_ids():
-        raise ArgumentError(f"the recording has an attempt at '{clean(case, 60)}', and no case has that name", fix)
-    try:
-        return case_of(case, int(instance) if instance else None)
-    except ValueError:
-        what = f"the recording has an attempt at the instance '{clean(instance, 60)}' of {case}, which cannot be a seed"
-        raise ArgumentError(what, fix) from None
 
 
 def matched(recording: Recording, instances: Iterable[Instance]) -> Iterator[tuple[Instance, list[Attempt]]]:

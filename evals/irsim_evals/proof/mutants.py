@@ -109,7 +109,7 @@ def attacks_on_answer(instance: Instance, answer: Answer) -> Iterator[tuple[str,
     """
     for name, content in _EXTRA.items():
         if _is_refused(instance.case, name, content):
-            yield "hidden_file", f"a file {name}", _with_files(answer, {name: content}, 1 + len(instance.case.turns))
+            yield "hidden_file", f"a file {name}", _with_files(answer, {name: content}, len(instance.requests))
     if "build" not in instance.case.disposition:
         for promise in _PROMISES:
             reply = f"{answer.reply}\n\n{promise}"

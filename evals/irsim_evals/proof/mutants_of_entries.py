@@ -17,21 +17,13 @@ def _built_in(registry: Registry) -> list[str]:
     return [f.name for f in registry.features() if f.kernel is not None and getattr(f.options, "needs_goal", True)]
 
 
-def _each_key(data: Data, change: Callable[[str, Data], None], what: str) -> Change:
+def _each_key(data: Data, change: Callable[[str, Data], Any], what: str) -> Change:
     """A change of each key of each entry."""
     for section, number, entry in entries(data):
         for key in entry:
             made = copy.deepcopy(data)
             change(key, items_of(made, section)[number])
             yield f"{section}[{number}].{key} {what}", made
-
-
-def _drop(key: str, entry: Data) -> None:
-    del entry[key]
-
-
-def _mistype(key: str, entry: Data) -> None:
-    entry[key + "s"] = entry.pop(key)
 
 
 @operator
@@ -69,7 +61,7 @@ def world_dropped(data: Data) -> Change:
 @operator
 def key_dropped(data: Data) -> Change:
     """A key of an entry left out."""
-    yield from _each_key(data, _drop, "left out")
+    yield from _each_key(data, lambda key, entry: entry.pop(key), "left out")
 
 
 def _swapped(data: Data, key: str, names: list[str], kept: tuple[str, ...]) -> Change:
@@ -165,7 +157,7 @@ def role_flipped(data: Data) -> Change:
 @operator
 def key_mistyped(data: Data) -> Change:
     """A key with a letter too many."""
-    yield from _each_key(data, _mistype, "with an s")
+    yield from _each_key(data, lambda key, entry: entry.update({f"{key}s": entry.pop(key)}), "with an s")
 
 
 @operator
