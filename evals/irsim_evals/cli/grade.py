@@ -1,27 +1,34 @@
-"""``irsim-evals grade``: grade what agents left in exported folders."""
+"""``irsim-evals grade``: grade what agents left in exported folders, and print the verdicts."""
 
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import re
 import signal
+import sys
 import threading
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from irsim.cli.output import console
+from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.store import Instance, Store, all_case_ids, case_of
 from irsim_evals.cli.cases import PROMPT_FILE
 from irsim_evals.cli.choice import CasesFolder, GoldsFolder, store_of
-from irsim_evals.cli.verdicts import show_verdicts
 from irsim_evals.grader.artefact import ArtefactError, from_folder
 from irsim_evals.grader.limited import grade_folder
-from irsim_evals.grader.outcome import Verdict
+from irsim_evals.grader.outcome import NOT_REACHED, Cost, Outcome, Verdict
+from irsim_evals.report.failures import MEANINGS, category_of, counted
 from irsim_evals.results import results_of, trial_of, write_results
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 __all__ = ["Changes", "fingerprint", "grade"]
 
@@ -29,6 +36,12 @@ _EXPORTED = re.compile(r"([\w-]+?)(?:@(\d{1,18}))?")
 """Name of an exported folder: the id of a case, and the seed of a fresh instance."""
 _PERIOD_S = 0.5
 """Time between two looks at the folders with ``--watch`` [s]."""
+_FILE_WIDTH = 120
+"""Width of a table that is not shown on a terminal, so that nothing is cut off."""
+_WIDE = 90
+"""Width of a terminal from which all columns are shown."""
+_MAX_SHOWN = 300
+"""Number of characters that are shown of what an assertion expected or observed."""
 Fingerprint = tuple[tuple[str, int, int], ...]
 """Path, time of the last change [ns] and size [bytes] of each file."""
 
@@ -83,7 +96,7 @@ def grade(
     grader = _Grader(None if calls is None else calls.resolve(), run_programs, store)
     changes = Changes(work.folder for work in works)
     verdicts = {work.folder: grader.grade(work) for work in works}
-    show_verdicts(list(verdicts.values()), json_output)
+    _show(list(verdicts.values()), json_output)
     if output is not None:
         place = folder.resolve()
         _write(output, arm or (place.parent if works[0].folder == folder else place).name, works, verdicts, store)
@@ -170,7 +183,7 @@ def _watch(
             for path in changed:
                 verdicts[path] = grader.grade(works[path])
             if changed:
-                show_verdicts([verdicts[path] for path in changed], json_output)
+                _show([verdicts[path] for path in changed], json_output)
     except KeyboardInterrupt:
         return
     finally:
@@ -212,3 +225,62 @@ class Changes:
         self._known.update((folder, now[folder]) for folder in ready)
         self._last = now
         return ready
+
+
+def _show(verdicts: Sequence[Verdict], json_output: bool) -> None:
+    """Print verdicts for people, or as one line of JSON."""
+    if json_output:
+        sys.stdout.write(json.dumps([v.model_dump(mode="json") for v in verdicts], ensure_ascii=False) + "\n")
+        sys.stdout.flush()
+        return
+    out = console()
+    _print_table(verdicts, out)
+    for verdict in verdicts:
+        failed = verdict.failed()
+        if failed or verdict.cost.notes:
+            out.print(f"\n{verdict.name}")
+        for outcome in failed:
+            if outcome.observed != NOT_REACHED:
+                out.print(f"  {_in_words(outcome)}", soft_wrap=True)
+        not_reached = [outcome.assertion for outcome in failed if outcome.observed == NOT_REACHED]
+        if not_reached:
+            out.print(f"  not reached: {', '.join(not_reached)}", soft_wrap=True)
+        for note in verdict.cost.notes:
+            out.print(f"  note: {clean(note, _MAX_SHOWN)}", soft_wrap=True)
+    passed = sum(verdict.strict for verdict in verdicts)
+    out.print(f"\n{passed} of {len(verdicts)} {'case passes' if len(verdicts) == 1 else 'cases pass'}")
+    for name, number in counted(map(category_of, verdicts)).items():
+        out.print(f"{number:>3} {name}: {MEANINGS[name]}", soft_wrap=True)
+
+
+def _print_table(verdicts: Sequence[Verdict], out: Console) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    if not out.is_terminal:
+        out.width = max(out.width, _FILE_WIDTH)
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column("case", overflow="fold")
+    table.add_column("verdict", no_wrap=True, min_width=4)
+    wide = out.width >= _WIDE
+    costs = ["calls", "errors", "tokens"] * any(verdict.cost != Cost() for verdict in verdicts)
+    for heading in (*["assertions"] * wide, "share", *["fails first in"] * wide, *costs):
+        table.add_column(heading, justify="left" if heading.startswith("fails") else "right", no_wrap=True)
+    for verdict in verdicts:
+        held = len(verdict.outcomes) - len(verdict.failed())
+        numbers = [getattr(verdict.cost, name) for name in costs]
+        table.add_row(
+            verdict.name,
+            Text("PASS", style="bold green") if verdict.strict else Text("FAIL", style="bold red"),
+            *[f"{held} of {len(verdict.outcomes)}"] * wide,
+            f"{verdict.rate:.0%}",
+            *["" if verdict.strict else verdict.reached] * wide,
+            *("?" if number is None else f"{number:,}" for number in numbers),
+        )
+    out.print(table)
+
+
+def _in_words(outcome: Outcome) -> str:
+    where = f" ({clean(outcome.yaml_path, _MAX_SHOWN)})" if outcome.yaml_path else ""
+    expected, observed = (clean(text, _MAX_SHOWN) for text in (outcome.expected, outcome.observed))
+    return f"{outcome.assertion}: expected {expected}; observed {observed}{where}"

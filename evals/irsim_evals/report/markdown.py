@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from irsim_evals.report.content import Content
+from irsim_evals.report.content import Content, tables
 from irsim_evals.report.failures import category_of
 from irsim_evals.report.html_text import one_line, percent
 from irsim_evals.report.summary import ArmSummary, Cell
-from irsim_evals.report.tables import tables
 from irsim_evals.results import Trial
 
 __all__ = ["markdown"]

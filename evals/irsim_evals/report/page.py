@@ -11,11 +11,10 @@ from pathlib import Path
 from irsim.common.pages import one_page
 from irsim.common.text import plural
 from irsim_evals.report.case_section import case_sections
-from irsim_evals.report.content import Content
+from irsim_evals.report.content import Content, tables
 from irsim_evals.report.html_text import escaped, note, part, percent
 from irsim_evals.report.load import Proof
 from irsim_evals.report.summary import ArmSummary, Cell
-from irsim_evals.report.tables import tables
 from irsim_evals.statistics import Interval
 
 __all__ = ["page"]

@@ -1,16 +1,23 @@
-"""Words and claims of the reply, and whether the world agrees."""
+"""Words, numbers and claims of the reply, and whether the world and its episodes agree."""
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+from pydantic import model_validator
+
+from irsim.common.arguments import is_number
 from irsim.options.registry import BEHAVIORS, KINEMATICS
-from irsim_evals.grader.matching import UNITS, Counted, Match, Quantity, matches, quantity, show
+from irsim_evals.grader.episode import run_episode
+from irsim_evals.grader.matching import UNITS, Counted, Match, Quantity, Seeds, matches, quantity, show
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register
-from irsim_evals.grader.properties import PropertyName, value_of, yaml_path
+from irsim_evals.grader.predicates.encounters import closest
+from irsim_evals.grader.properties import PropertyName, value_of
 from irsim_evals.grader.selection import Selection
 from irsim_evals.grader.words import Regex
 
@@ -18,7 +25,7 @@ if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
     from irsim_evals.grader.scene import GradedScene
 
-__all__ = ["Claim", "claims"]
+__all__ = ["Claim", "claims", "occurs"]
 
 _NUMBER_WORDS = [
     "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
@@ -40,9 +47,13 @@ _MEASURE = re.compile(
 _BEFORE = re.compile(rf"{_NUMBER}\s*(m/s|km/h|cm|mm|m)\s+(radius|range|speed|diameter)\b", re.IGNORECASE)
 _MAX_QUOTED = 120
 """Number of characters of a reply that an observation quotes."""
-_STATED = re.compile(r"(?<![\w.,])(\d+(?:[.,]\d+)?)\s*(km/h|m/s|cm|mm|m|°|deg|rad)?(?![\w])")
+_STATED = re.compile(r"(?<![\w.,])(\d+(?:[.,]\d+)?)\s*(km/h|m/s|cm|mm|m|s(?:e[cgk]\w*)?|°|deg|rad)?(?![\w])")
 _AROUND = 100
 """Number of characters before and behind a about in which its value is looked for."""
+_UNITS = {"arrival": ("s",), "separation": ("m", "cm", "mm"), "path": ("m", "cm", "mm")}
+"""Measure of an episode → units of its numbers; the others are numbers of bodies."""
+_ROUNDED = 0.2
+"""Greatest relative deviation of a rounded number."""
 
 
 @dataclass(frozen=True)
@@ -128,6 +139,11 @@ def _measures(scene: GradedScene, what: str) -> list[float]:
     return [*lengths, float(scene.world.width), float(scene.world.height)]
 
 
+def occurs(patterns: Iterable[str], text: str) -> bool:
+    """Whether one of some regular expressions occurs in a text, ignoring case."""
+    return any(re.search(pattern, text, re.IGNORECASE) for pattern in patterns)
+
+
 @register("says")
 class Says(AnswerPredicate):
     """Words in the reply, as regular expressions that ignore case and line breaks."""
@@ -153,14 +169,10 @@ class Says(AnswerPredicate):
         if self.turn is not None:
             reply = material.answer.replies[self.turn - 1] if self.turn <= len(material.answer.replies) else ""
         text = re.sub(r"\s+", " ", reply)
-
-        def occurs(pattern: str) -> bool:
-            return re.search(pattern, text, re.IGNORECASE) is not None
-
-        missing = [pattern for pattern in self.all_of if not occurs(pattern)]
-        unwanted = [pattern for pattern in self.none_of if occurs(pattern)]
-        lacking = bool(self.any_of) and not any(map(occurs, self.any_of))
-        made = [name for name, ways in self.points.items() if any(map(occurs, ways))]
+        missing = [pattern for pattern in self.all_of if not occurs([pattern], text)]
+        unwanted = [pattern for pattern in self.none_of if occurs([pattern], text)]
+        lacking = bool(self.any_of) and not occurs(self.any_of, text)
+        made = [name for name, ways in self.points.items() if occurs(ways, text)]
         asked = self.all_of or self.any_of or self.points  # an empty reply holds no unwanted word
         need = len(self.points) if self.at_least is None else self.at_least
         ways = len(self.any_of) + len(self.all_of)
@@ -178,45 +190,92 @@ class Says(AnswerPredicate):
 
 @register("states")
 class States(AnswerPredicate):
-    """The reply gives the value that a property of a body has in the world, near words that name the about."""
+    """The reply gives a number that the world has, or that is measured in episodes of the answer's own scenario, near
+    words that name it. An empty selection fails."""
 
     of: Selection
-    """Name of the selection; its first body counts."""
-    property: PropertyName
+    """Name of the selection; of a property the value of its first body counts."""
+    property: PropertyName | None = None
     """Name of the property."""
     about: Regex
     """Regular expression for words near the value, ignoring case."""
     factors: list[Quantity] = [1.0]
-    """The stated number may be the value times one of these: 2 allows a diameter for a radius."""
+    """The stated number may be the value of the property times one of these: 2 allows a diameter for a radius."""
+    measure: Literal["arrival", "separation", "path", "arrived", "collided"] | None = None
+    """What is measured instead: when each body arrives [s]; the smallest distance to those of `to`, edge to edge [m];
+    how far each one goes [m]; how many arrive or collide, in all episodes together. A sentence with the words of
+    `about` and numbers of its unit, none of which is right, fails."""
+    to: Selection | None = None
+    """Name of the other selection, for ``separation``."""
+    seconds: Quantity = 60.0
+    """Simulated time of an episode [s]; a time limit of the world ends it before."""
+    seeds: Seeds = [0]
+    """One episode per seed; the value in any of them is right."""
+    tol: Quantity | None = None
+    """Greatest deviation of the number; default: 2 %, of a measure also half of its last digit, at most 20 %."""
+    besides: list[Quantity] = []
+    """Numbers that may stand there, too, such as the time limit."""
+
+    @model_validator(mode="after")
+    def _one(self) -> States:
+        if (self.property is None) == (self.measure is None) or (self.to is None) != (self.measure != "separation"):
+            raise ValueError("give either `property` or `measure`, and `to` with separation only")
+        return self
 
     def observe(self, material: Material) -> Observation:
-        """Look for the number."""
-        scene = material.scene(0)
-        bodies = material.bodies(scene, self.of)
-        if not bodies:
-            return Observation(False, f"the reply states {self.property} of {self.of}", f"{self.of}: no body")
-        value = value_of(scene, bodies[0], self.property)
-        expected = f"the reply states {self.property} of {self.of} ({show(value)}) near /{self.about}/"
-        where = yaml_path(bodies[0], self.property)
-        if not isinstance(value, (int, float)):
-            return Observation(False, expected, f"{bodies[0].name} has no {self.property}", where)
-        seen = _numbers(re.sub(r"\s+", " ", material.answer.reply), self.about)
-        wanted = [value * factor for factor in self.factors]
-        passed = any(abs(a - b) <= 0.02 * abs(b) + 1e-9 for a in seen for b in wanted)
-        observed = ", ".join(show(number) for number in seen[:8]) or "no number there"
-        return Observation(passed, expected, observed, where)
+        """Measure, and read the reply."""
+        values = [value for seed in self.seeds for value in self._values(material, seed)]
+        values = [sum(values)] if self.measure in ("arrived", "collided") else values
+        shown = ", ".join(map(show, values)) or "none"
+        expected = f"the reply states {self.property or self.measure} of {self.of} ({shown}) near /{self.about}/"
+        reply, units = material.answer.reply, _UNITS.get(self.measure or "", ("",))
+        for sentence in re.split(r"(?<=[.!?;])\s|\n", reply) if self.measure else ():
+            told = [one for one in numbers_in(sentence) if one[1] in units and not self._right([one], self.besides)]
+            if told and re.search(self.about, sentence, re.IGNORECASE) and not self._right(told, values):
+                return Observation(False, expected, sentence.strip()[:_MAX_QUOTED])
+        text = re.sub(r"\s+", " ", reply)
+        spans = [mention.span() for mention in re.finditer(self.about, text, re.IGNORECASE)]
+        near = [number for a, b in spans for number in numbers_in(text[max(0, a - _AROUND) : b + _AROUND])]
+        seen = ", ".join(show(number) for number, *_ in near[:8]) or "no number there"
+        return Observation(self._right(near, values), expected, seen)
+
+    def _values(self, material: Material, seed: int) -> list[float]:
+        """The measured values with a seed."""
+        scene = material.scene(seed)
+        bodies, others = (material.bodies(scene, name or self.of) for name in (self.of, self.to))
+        if not bodies or not others:
+            raise LookupError(f"{self.to if bodies else self.of}: no body")
+        if self.property is not None:
+            value = value_of(scene, bodies[0], self.property)
+            return [value * factor for factor in self.factors] if is_number(value) else []
+        scenario: Any = material.scenario
+        episode = run_episode(scenario, seed, min(self.seconds, scene.world.time_limit or math.inf))
+        if self.to is not None:
+            return [min(closest(episode, a, [b]) for a in bodies for b in others if a is not b)]
+        if self.measure == "path":
+            return [float(np.hypot(*np.diff(episode.path(body.index), axis=0).T).sum()) for body in bodies]
+        if self.measure == "collided":
+            return [float(bool(episode.collisions(body.name))) for body in bodies]
+        times = [time for body in bodies if (time := episode.arrival(body.name)) is not None]
+        return times if self.measure == "arrival" else [float(len(times))]
+
+    def _right(self, numbers: list[tuple[float, str, float]], values: list[float]) -> bool:
+        """Whether one of some numbers is one of the values, as far as it is rounded."""
+        pairs = [(a, b, half if self.measure else 0.0) for a, _, half in numbers for b in values]
+        wide = [
+            max(0.02 * abs(b), min(half, _ROUNDED * abs(b))) if self.tol is None else self.tol for _, b, half in pairs
+        ]
+        return any(abs(a - b) <= tol + 1e-9 for (a, b, _), tol in zip(pairs, wide, strict=True))
 
 
-def _numbers(reply: str, about: str) -> list[float]:
-    """The numbers near a about in SI units."""
-    numbers: list[float] = []
-    for mention in re.finditer(about, reply, re.IGNORECASE):
-        part = reply[max(0, mention.start() - _AROUND) : mention.end() + _AROUND]
-        for number, unit in _STATED.findall(part):
-            plain = number.replace(",", ".")
-            known = all(name in UNITS for name in unit.split("/"))
-            numbers.append(quantity(f"{plain} {unit}") if known else float(plain))
-    return numbers
+def numbers_in(text: str) -> list[tuple[float, str, float]]:
+    """The numbers in a text in SI units, their units as written, and half of their last digits."""
+    found = []
+    for number, word in _STATED.findall(text):
+        unit, plain = "s" if word.startswith("s") else word, number.replace(",", ".")
+        one = quantity(f"1 {unit}") if all(name in UNITS for name in unit.split("/")) else 1.0
+        found.append((float(plain) * one, unit, 0.5 * one / 10 ** len(plain.partition(".")[2])))
+    return found
 
 
 @register("assumptions")

@@ -13,6 +13,7 @@ from irsim.options.base import problem
 from irsim_evals.grader.artefact import scenarios_in
 from irsim_evals.grader.matching import Counted, Match, Quantity, matches
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register, registered
+from irsim_evals.grader.predicates.reply import occurs
 from irsim_evals.grader.runs_of_answers import Runs, runs_of
 from irsim_evals.grader.words import BehaviorName, Regex
 
@@ -131,7 +132,7 @@ class Comparison(AnswerPredicate):
         problem = self._started(runs, groups) if runs.started else self._told(runs.words, groups)
         if problem:
             return problem
-        missing = next((name for name, ways in self.metrics.items() if not _occurs(ways, runs.words)), "")
+        missing = next((name for name, ways in self.metrics.items() if not occurs(ways, runs.words)), "")
         return f"nothing reports the rate of {missing}" if missing else ""
 
     def _started(self, runs: Runs, groups: dict[int, dict[str, Material]]) -> str:
@@ -169,10 +170,6 @@ class Comparison(AnswerPredicate):
         many = rf"(?<![\d.]){self.episodes}\b\W{{0,3}}(?:\w+\W+){{0,2}}?(?:seed|episode|run|layout|trial)"
         many += rf"|\b(?:seed|episode|run)s?\W{{1,4}}{self.episodes}\b"
         return "" if re.search(many, words, re.IGNORECASE) else f"nothing says that there are {self.episodes} episodes"
-
-
-def _occurs(ways: list[str], words: str) -> bool:
-    return any(re.search(way, words, re.IGNORECASE) for way in ways)
 
 
 def _limit(one: Material) -> int | None:

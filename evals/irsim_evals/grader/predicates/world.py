@@ -1,7 +1,8 @@
-"""The world: its properties, its map, everything solid in it, and how crowded it is."""
+"""The world: its properties, its map, everything solid in it, and how it differs from seed to seed."""
 
 from __future__ import annotations
 
+import itertools
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,13 +10,16 @@ import numpy as np
 import shapely
 from pydantic import model_validator
 
+from irsim.diagnostics.errors import PlacementError
 from irsim.objects.describe import grid_values
 from irsim.options.registry import MAPS
 from irsim.scenario.model.lookup import literals
 from irsim.scenario.model.world import WorldModel
-from irsim_evals.grader.matching import Kind, Match, Quantity, checked, matches, show
+from irsim_evals.grader.matching import Counted, Kind, Match, Quantity, Seeds, checked, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, SeedsPredicate, register
+from irsim_evals.grader.sanity import overlaps
+from irsim_evals.grader.scene import open_scene
 from irsim_evals.grader.words import OneOf
 
 if TYPE_CHECKING:
@@ -39,6 +43,9 @@ _KEYS = {"left": "offset", "bottom": "offset", "right": "width", "top": "height"
 )
 _MIN_AREA = 1e-4
 """Differences of a smaller area come from rounding [m²]."""
+
+_SAME = 1e-9
+"""Distance [m] between two places that counts as none."""
 
 
 @register("world")
@@ -166,3 +173,86 @@ def _words(what: str, parts: list[Any]) -> str:
         return ""
     (x, y), area = _middle(parts[0]), sum(part.area for part in parts)
     return f"{what}: {show(float(area))} m², for example at ({x:.2f}, {y:.2f})"
+
+
+@register("varies", "relations")
+class Varies(OfBodies, SeedsPredicate):
+    """The bodies of a selection start elsewhere with each seed, and with the same seed where they did before."""
+
+    seeds: Seeds = [0, 1, 2, 3, 4]
+    """Seeds that are compared."""
+    spread: Quantity = 0.0
+    """Least standard deviation of each coordinate over bodies and seeds [m]."""
+    resets: bool = False
+    """Also compare what ``reset(random=True)`` draws."""
+    goals: bool = True
+    """Goals must differ, too."""
+
+    def observe(self, material: Material) -> Observation:
+        """Build the worlds."""
+        expected = f"{self.of} start elsewhere with each seed"
+        places = [self._places(material, material.scene(seed)) for seed in self.seeds]
+        if not places[0].size:
+            return Observation(False, expected, f"{self.of}: no body")
+        if any(p.shape != places[0].shape for p in places):
+            return Observation(False, expected, "another number with another seed")
+        for k, (a, b) in enumerate(itertools.pairwise(places)):
+            if _fixed(a, b):
+                return Observation(
+                    False, expected, f"the same place with the seeds {self.seeds[k]} and {self.seeds[k + 1]}"
+                )
+        if material.scenario is not None:
+            again = self._places(material, open_scene(material.scenario, self.seeds[0]))
+            if np.abs(again - places[0]).max() > _SAME:
+                return Observation(False, expected, f"other places with the same seed {self.seeds[0]}")
+            if self.resets:
+                scene = open_scene(material.scenario, self.seeds[0])
+                scene.env.reset(random=True)
+                indices = [body.index for body in material.bodies(material.scene(self.seeds[0]), self.of)]
+                if np.abs(scene.env.simulation.pose[indices, :2] - places[0][:, :2]).max() <= _SAME:
+                    return Observation(False, expected, "the same places after reset(random=True)")
+        spread = np.concatenate(places)[:, :2].std(axis=0)
+        if spread.min() < self.spread:
+            return Observation(False, f"{expected}, spread by {show(self.spread)} m", f"{show(float(spread.min()))} m")
+        return Observation(True, expected, f"{len(self.seeds)} seeds differ")
+
+    def _places(self, material: Material, scene: GradedScene) -> Any:
+        rows = []
+        for body in material.bodies(scene, self.of):
+            goal = body.goal[:2] if self.goals and body.goal is not None else []
+            rows.append([*body.position, *goal])
+        return np.array(rows, dtype=float)
+
+
+def _fixed(a: Any, b: Any) -> bool:
+    """Whether some start, or all goals, stay where they were."""
+    starts = np.abs(a[:, :2] - b[:, :2]).max(axis=1)
+    goals = np.abs(a[:, 2:] - b[:, 2:])
+    return bool(starts.min() <= _SAME or (goals.size and goals.max(axis=1).min() <= _SAME))
+
+
+@register("overlap_free", "sane")
+class OverlapFree(SeedsPredicate):
+    """Nothing overlaps at the start in a share of the seeds; a seed without a free place counts as an overlap."""
+
+    seeds: Counted = 20
+    """Number of seeds, from 0 on."""
+    share: Quantity
+    """Least share of them."""
+
+    def observe(self, material: Material) -> Observation:
+        """Count the seeds."""
+        bad = []
+        for seed in range(self.seeds):
+            try:
+                if overlaps(material, material.scene(seed)):
+                    bad.append(seed)
+            except PlacementError:
+                bad.append(seed)
+        free = self.seeds - len(bad)
+        return Observation(
+            free >= self.share * self.seeds - 1e-9,
+            f"no overlap in {self.share:.0%} of {self.seeds} seeds",
+            f"{free} of {self.seeds}",
+            seed=bad[0] if bad else None,
+        )
