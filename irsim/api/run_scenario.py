@@ -64,7 +64,8 @@ def run(
 ) -> RunResult:
     """Simulate one episode, until every robot has arrived or stopped, or the horizon is reached.
 
-    Without robots it ends when everything that moves has arrived or stopped, and at once where nothing moves.
+    Without robots it ends when everything that moves has arrived or stopped, and at once where nothing moves, unless
+    it is shown or connected.
 
     Args:
         path: Scenario file, or ``SUITE/SCENARIO``.
@@ -160,7 +161,8 @@ def run(
         if recorder is not None and recorded is not None and record is not False:
             recorded(recorder.run_id)
         files, lost = list[str](), None
-        end = until if connection is None or env.robot_list else "time_limit"  # a program may move obstacles
+        alone = connection is None and not show  # no program moves obstacles, and nobody looks at the window
+        end = until if alone or env.robot_list else "time_limit"
         try:
             if save is None and not show:
                 advance(env, horizon, progress, until=end, recorder=recorder)
