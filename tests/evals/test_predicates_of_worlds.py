@@ -172,7 +172,7 @@ def test_a_mutant_of_one_entry_leaves_those_that_share_an_anchor() -> None:
     shape = {"name": "circle", "radius": 0.2}
     data = {"robot": [{"shape": shape, "state": [1, 1, 0]}, {"shape": shape, "state": [3, 3, 0]}]}
     assert plain(data) == data
-    half = [mutant.data for mutant in mutants_of(data) if mutant.what == "robot[0]: shape.radius x 0.5"]
+    half = [made for _, what, made in mutants_of(data) if what == "robot[0]: shape.radius x 0.5"]
     assert [entry["shape"]["radius"] for entry in half[0]["robot"]] == [0.1, 0.2]
 
 

@@ -17,7 +17,7 @@ import yaml
 from mcp import Client
 from mcp.types import TextContent
 
-from irsim_evals.cases.store import all_case_ids, case_ids, case_of, folder, raw_case
+from irsim_evals.cases.store import case_files, case_ids, case_of, folder, raw_case
 from irsim_evals.cli.cases import write_case
 from irsim_evals.grader.artefact import Answer, from_folder
 from irsim_evals.grader.grade import grade
@@ -58,8 +58,8 @@ def test_a_skill_has_tasks_that_are_no_examples_of_it(skill: str) -> None:
 def test_tasks_are_cases_that_only_count_if_they_are_named() -> None:
     tasks = [task for tasks in TASKS.values() for task in tasks]
     assert not set(tasks) & set(case_ids())
-    assert sorted([*tasks, *case_ids(sets=True)]) == all_case_ids()
-    assert len(list(folder("cases").rglob("*.yaml"))) == len(all_case_ids())
+    assert sorted([*tasks, *case_ids(sets=True)]) == list(case_files())
+    assert len(list(folder("cases").rglob("*.yaml"))) == len(case_files())
     assert "library-aisle" not in irsim_evals("cases").output
     assert "library-aisle" in irsim_evals("cases", "irsim-scenario").output
 
@@ -299,7 +299,7 @@ def test_transcripts_are_varied_and_well_formed() -> None:
     for path in TRANSCRIPTS:
         asked, steps = lines(path)
         assert set(asked) == {"case", "answer"}
-        assert asked["case"] in all_case_ids()
+        assert asked["case"] in case_files()
         assert all(set(step) in ({"file", "text"}, {"tool", "arguments", "expect"}) for step in steps)
         assert all(step["expect"] for step in steps if "tool" in step)
         tools |= {step["tool"] for step in steps if "tool" in step}

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from irsim_evals.cases.model import Assertion
-from irsim_evals.cases.store import all_case_ids, case_of
+from irsim_evals.cases.store import case_files, case_of
 from irsim_evals.cli.language import examples
 from irsim_evals.grader.predicates._base import registered
 from irsim_evals.grader.properties import PROPERTIES
@@ -76,7 +76,7 @@ def test_every_predicate_is_listed_and_explained() -> None:
 def test_the_example_of_a_predicate_can_be_used() -> None:
     used = {
         item.predicate.name
-        for case in (case_of(case_id).case for case_id in all_case_ids())
+        for case in (case_of(case_id).case for case_id in case_files())
         for item in case.assertions().values()
     }
     assert len(used) > 30

@@ -18,7 +18,7 @@ from irsim_evals.grader.artefact import CALLS_FILE, Answer, calls_of, from_folde
 from irsim_evals.grader.material import write_files
 
 __all__ = [
-    "PUBLISHED", "Instance", "Store", "all_case_ids", "case_files", "case_ids", "case_of", "cases_hash",
+    "PUBLISHED", "Instance", "Store", "case_files", "case_ids", "case_of", "cases_hash",
     "given_pictures", "golds_of", "instance_of", "raw_case", "sets_of", "write_given",
 ]  # fmt: skip
 
@@ -95,11 +95,6 @@ def case_ids(store: Store = PUBLISHED, *, sets: bool = False) -> list[str]:
     """
     patterns = ("*.yaml", "*/*.yaml") if sets else ("*.yaml",)
     return sorted({path.stem for pattern in patterns for path in store.cases.glob(pattern)})
-
-
-def all_case_ids(store: Store = PUBLISHED) -> list[str]:
-    """Ids of all cases, including the cases in sets."""
-    return list(case_files(store))
 
 
 def sets_of(path: Path, store: Store = PUBLISHED) -> tuple[str, ...]:

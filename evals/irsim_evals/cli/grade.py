@@ -18,7 +18,7 @@ import typer
 from irsim.cli.output import console
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
-from irsim_evals.cases.store import Instance, Store, all_case_ids, case_of
+from irsim_evals.cases.store import Instance, Store, case_files, case_of
 from irsim_evals.cli.cases import PROMPT_FILE
 from irsim_evals.cli.choice import CasesFolder, GoldsFolder, store_of
 from irsim_evals.grader.artefact import ArtefactError, from_folder
@@ -126,7 +126,7 @@ def _works(folder: Path, case: str | None, store: Store) -> list[_Work]:
     """The folders to grade."""
     if not folder.is_dir():
         raise ArgumentError(f"there is no folder {folder}", "write some with irsim-evals export DIR")
-    known = set(all_case_ids(store))
+    known = case_files(store)
     if case is None:
         paths = [path for path in (folder, *sorted(folder.iterdir())) if path.is_dir()]
         why = f"{folder} holds no exported case"

@@ -20,7 +20,7 @@ from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.yaml.formatting import flow
 from irsim_evals.cases.expressions import substitute
-from irsim_evals.cases.store import PUBLISHED, all_case_ids, case_of, raw_case
+from irsim_evals.cases.store import case_files, case_of, raw_case
 from irsim_evals.grader.matching import TOLERANCES, Counted, Match, Quantity, Seeds
 from irsim_evals.grader.predicates._base import registered, stands_at_start
 from irsim_evals.grader.properties import PROPERTIES
@@ -87,7 +87,7 @@ def examples() -> dict[str, tuple[str, str]]:
     One that needs no selections of its own case is preferred.
     """
     uses_of: dict[str, list[tuple[bool, int, str, str]]] = {}
-    for case_id in all_case_ids(PUBLISHED):
+    for case_id in case_files():
         raw, values = raw_case(case_id), case_of(case_id).values
         for item in [item for plan in (raw, *raw.get("episodes", ())) for item in plan.get("assert", ())]:
             for name in registered().keys() & item.keys():

@@ -11,7 +11,8 @@ import typer
 
 from irsim.cli.output import console, progress
 from irsim_evals.cli.choice import CasesFolder, GoldsFolder, Wanted, chosen, end_with, read_cases, store_of
-from irsim_evals.proof.prove import Disagreement, Proof, as_case_rows, as_rows
+from irsim_evals.grader.outcome import Outcome
+from irsim_evals.proof.prove import Proof, as_case_rows, as_rows
 from irsim_evals.proof.prove import prove as run_proof
 from irsim_evals.proof.trials import Trial
 
@@ -53,7 +54,7 @@ def prove(
             "rows": as_rows(proof), "cases": as_case_rows(proof), "wrong": failures, "left_out": dict(proof.left_out),
             "unjudged": [f"{_said_of(trial)}: {why}" for trial, why in proof.unjudged],
             "compared": dict(proof.compared),
-            "disagreements": [_words_of(item) for item in proof.disagreements],
+            "disagreements": [_words_of(*item) for item in proof.disagreements],
             "seconds": round(seconds, 1),
         }  # fmt: skip
         sys.stdout.write(json.dumps(report, ensure_ascii=False) + "\n")
@@ -70,10 +71,10 @@ def _said_of(trial: Trial) -> str:
     return f"{trial.case}/{trial.gold} {trial.kind}, {trial.operator}: {trial.what}"
 
 
-def _words_of(item: Disagreement) -> str:
+def _words_of(trial: Trial, predicate: str, outcome: Outcome) -> str:
     """A disagreement for people."""
-    trial, said = item.trial, "holds" if item.passed else "does not hold"
-    return f"{_said_of(trial)}: {item.assertion} ({item.predicate}) {said} for the grader only: {item.observed}"
+    said = "holds" if outcome.passed else "does not hold"
+    return f"{_said_of(trial)}: {outcome.assertion} ({predicate}) {said} for the grader only: {outcome.observed}"
 
 
 def _show(proof: Proof, seconds: float, quick: bool) -> None:
@@ -89,7 +90,7 @@ def _show(proof: Proof, seconds: float, quick: bool) -> None:
     for name, (wrong, count) in proof.rates.items():
         out.print(f"{name}: {wrong} of {count}" + (f" ({wrong / count:.2%})" if count else ""))
     for item in proof.disagreements:
-        out.print(f"DISAGREE {_words_of(item)}", soft_wrap=True)
+        out.print(f"DISAGREE {_words_of(*item)}", soft_wrap=True)
     judged = ", ".join(f"{name} {number}" for name, number in sorted(proof.compared.items()))
     out.print(f"second implementation: {len(proof.disagreements)} disagreements, judged: {judged or 'nothing'}")
     for row in as_case_rows(proof):

@@ -62,14 +62,12 @@ class Printed:
         passed: Whether it ended by itself, and without an error.
         text: Its output.
         why: Why it did not pass.
-        ended: Whether it ended by itself.
         episodes: The episodes that it started in a rehearsal.
     """
 
     passed: bool
     text: str
     why: str = ""
-    ended: bool = True
     episodes: Sequence[Started] = ()
 
 
@@ -134,7 +132,7 @@ def run_program(folder: Path, name: str, seconds: float = SECONDS, log: Path | N
         text = printed.read(_MAX_PRINTED).decode("utf-8", errors="replace")
     episodes = read_log(log) if log else []
     if code in (None, *_OUT_OF_TIME):
-        return Printed(False, text, f"{name} did not end within {seconds:g} s", ended=False, episodes=episodes)
+        return Printed(False, text, f"{name} did not end within {seconds:g} s", episodes=episodes)
     if code != 0:
         lines = text.strip().splitlines()
         why = f"{name} ended with exit code {code}: {lines[-1] if lines else ''}"[:300]

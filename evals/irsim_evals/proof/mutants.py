@@ -18,7 +18,7 @@ from irsim_evals.grader.artefact import Answer, from_folder
 from irsim_evals.grader.matching import matches
 from irsim_evals.grader.material import write_files
 from irsim_evals.proof import attacks, attacks_on_places, mutants_of_entries, mutants_of_values
-from irsim_evals.proof.operators import NUMBER, OPERATORS, Data, Mutant, plain
+from irsim_evals.proof.operators import NUMBER, OPERATORS, Data, plain
 
 __all__ = ["attacks_on_answer", "mutants_of", "mutants_of_answer", "mutants_of_text"]
 
@@ -37,13 +37,13 @@ _PROMISES = (
 )
 
 
-def mutants_of(data: Data) -> Iterator[Mutant]:
-    """All mutants of a scenario, in a fixed order; none equals the scenario."""
+def mutants_of(data: Data) -> Iterator[tuple[str, str, Data]]:
+    """Operator, change in words and data of each mutant of a scenario, in a fixed order; none equals the scenario."""
     data = plain(data)
     for name, make in OPERATORS.items():
         for what, changed in make(plain(data)):
             if changed != data:
-                yield Mutant(name, what, changed)
+                yield name, what, changed
 
 
 def mutants_of_text(text: str) -> Iterator[tuple[str, str, Data]]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any, TypeGuard
 
 import yaml
@@ -15,12 +14,13 @@ from irsim.scenario.model.lookup import at
 from irsim_evals.grader.scene import GradedScene
 
 __all__ = [
-    "NUMBER", "OPERATORS", "REWRITES", "Change", "Data", "Mutant", "component", "dump", "each_entry", "entries",
+    "NUMBER", "OPERATORS", "REWRITES", "Change", "Data", "component", "dump", "each_entry", "entries",
     "is_pose", "items_of", "operator", "plain", "rewrite", "sensors_of",
 ]  # fmt: skip
 
 Data = dict[str, Any]
 Change = Iterator[tuple[str, Data]]
+"""Changed scenarios, each with the change in words."""
 Operator = Callable[[Data], Change]
 OPERATORS: dict[str, Operator] = {}
 Rewrite = Callable[[str, Data, GradedScene], str | None]
@@ -29,21 +29,6 @@ NUMBER = re.compile(r"(?<![\w.#\"'-])(-?\d+(?:\.\d+)?)(?![\w.:\"'])")
 """A number in the text of a scenario."""
 _DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 """The one in C is ten times as fast; some installations lack it."""
-
-
-@dataclass(frozen=True)
-class Mutant:
-    """One changed scenario.
-
-    Attributes:
-        operator: Name of the operator that made it.
-        what: The change, for people.
-        data: The scenario.
-    """
-
-    operator: str
-    what: str
-    data: Data
 
 
 def operator(function: Operator) -> Operator:

@@ -11,11 +11,11 @@ from typing import Any
 from irsim_evals.cases.store import PUBLISHED, Store, case_ids
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.limited import SECONDS, LimitError, run_all
-from irsim_evals.grader.outcome import NOT_REACHED, Verdict
+from irsim_evals.grader.outcome import NOT_REACHED, Outcome, Verdict
 from irsim_evals.proof.oracle.opinions import opinions
 from irsim_evals.proof.trials import RIGHT, Kind, Trial, kind_of, trials_of
 
-__all__ = ["Disagreement", "Proof", "as_case_rows", "as_rows", "prove", "tried"]
+__all__ = ["Proof", "as_case_rows", "as_rows", "prove", "tried"]
 
 _SECOND_SHARE = 0.25
 """Share of the trials that are also given to the second implementation."""
@@ -27,24 +27,6 @@ _ERRORS: dict[str, tuple[Kind, ...]] = {
     "false rejects": RIGHT,
 }
 """Kind of wrong verdicts → trials that can have one."""
-
-
-@dataclass(frozen=True)
-class Disagreement:
-    """An assertion that the second implementation judges otherwise.
-
-    Attributes:
-        trial: The answer.
-        assertion, predicate: Its id in the case, and what it says.
-        passed: The grader's opinion; the second implementation's is the opposite.
-        observed: Observed value of the grader.
-    """
-
-    trial: Trial
-    assertion: str
-    predicate: str
-    passed: bool
-    observed: str
 
 
 @dataclass
@@ -60,7 +42,7 @@ class Proof:
             are under ``waived``.
         by_case: (case, kind) → number of trials.
         compared: Predicate → number of assertions that the second implementation has judged, too.
-        disagreements: Assertions that it has judged otherwise.
+        disagreements: Assertions that it has judged otherwise: trial, predicate, and outcome of the grader.
     """
 
     done: Counter[tuple[str, str]] = field(default_factory=Counter)
@@ -69,7 +51,7 @@ class Proof:
     left_out: Counter[str] = field(default_factory=Counter)
     by_case: Counter[tuple[str, str]] = field(default_factory=Counter)
     compared: Counter[str] = field(default_factory=Counter)
-    disagreements: list[Disagreement] = field(default_factory=list)
+    disagreements: list[tuple[Trial, str, Outcome]] = field(default_factory=list)
 
     @property
     def rates(self) -> dict[str, tuple[int, int]]:
@@ -146,9 +128,7 @@ def _note(proof: Proof, trial: Trial, result: Any) -> None:
             predicate = said[outcome.assertion]
             proof.compared[predicate] += 1
             if second[outcome.assertion] != outcome.passed:
-                proof.disagreements.append(
-                    Disagreement(trial, outcome.assertion, predicate, outcome.passed, outcome.observed)
-                )
+                proof.disagreements.append((trial, predicate, outcome))
 
 
 def as_rows(proof: Proof) -> list[dict[str, Any]]:

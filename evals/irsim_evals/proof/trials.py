@@ -14,7 +14,7 @@ from typing import Literal
 
 import yaml
 
-from irsim.bundled.templates.store import load, names
+from irsim.bundled.templates import load_all
 from irsim.diagnostics.errors import IrsimError
 from irsim.scenario.read import read
 from irsim.scenario.yaml.comments import places_of_comments
@@ -177,8 +177,8 @@ def changes_of(
 def _mutants(text: str, edited: bool) -> Iterator[tuple[str, str, Callable[[], str]]]:
     """Operator, change and writer of each mutant of a scenario; mutants of an edited file keep its comments."""
     comments = _comments(text) if edited else ""
-    for mutant in mutants_of(yaml.safe_load(text)):
-        yield mutant.operator, mutant.what, partial(_written, mutant.data, comments)
+    for operator, what, data in mutants_of(yaml.safe_load(text)):
+        yield operator, what, partial(_written, data, comments)
     if edited:
         yield from (("number_in_text", what, partial(str, new)) for what, new, _ in mutants_of_text(text))
 
@@ -224,10 +224,7 @@ def _null(case_id: str, instance: Instance) -> Iterator[Trial]:
         "claims": Answer("claims", {"scenario.yaml": empty}, "All assertions passed. Everything was built as asked."),
         "prompt as description": Answer("echo", {"scenario.yaml": f"{empty}# {instance.prompt!r}\n"}, instance.prompt),
     }
-    for template in names():
-        answers[f"template {template}"] = Answer(
-            template, {**instance.case.files, "scenario.yaml": load(template).text}
-        )
-    for operator, answer in answers.items():
-        short = operator.split()[0]
-        yield Trial(case_id, "", "null", short, operator, instance, answer)
+    for one in load_all():
+        answers[f"template {one.name}"] = Answer(one.name, {**instance.case.files, "scenario.yaml": one.text})
+    for what, answer in answers.items():
+        yield Trial(case_id, "", "null", what.split()[0], what, instance, answer)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import difflib
 import html
 import math
-import re
 from collections.abc import Collection
 from decimal import Decimal
 
+from irsim.bundled.templates.fill import parse_path
 from irsim.common.text import clean
 from irsim.common.yaml.nodes import Node
 from irsim.scenario.limits import Limits
@@ -33,7 +33,6 @@ _MAX_COMPARED_LINES = 1500
 """Lines of a file that is compared with the one before."""
 _MAX_PARSED = 100_000
 """Characters of a scenario in which lines are looked up."""
-_PART = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
 
 
 def escaped(text: object, longest: int = 2000) -> str:
@@ -102,7 +101,7 @@ def lines_of(text: str, paths: Collection[str]) -> dict[str, range]:
 
 def _lines(document: Document, path: str) -> range | None:
     """Lines of a value; the line of the innermost part that is there if it is missing."""
-    parts = (*document.prefix, *(int(index) if index else key for index, key in _PART.findall(path)))
+    parts = (*document.prefix, *parse_path(path))
     node, first = document.tree(), document.mark(parts, key=True)
     if node is None or first is None or not parts or str(parts[0]) not in map(str, node.children):
         return None

@@ -12,7 +12,7 @@ from irsim.common.records import ContentError, read_json
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.messages.translate import option_message, option_problems
-from irsim_evals.cases.store import PUBLISHED, Instance, Store, all_case_ids, case_of, cases_hash
+from irsim_evals.cases.store import PUBLISHED, Instance, Store, case_files, case_of, cases_hash
 from irsim_evals.proof.trials import RIGHT
 from irsim_evals.results import Results, Trial
 from irsim_evals.statistics import Interval, wilson
@@ -132,7 +132,7 @@ def _first(error: ValidationError, model: type[BaseModel]) -> str:
 
 def asked_of(results: Results, store: Store = PUBLISHED) -> list[Instance | None]:
     """The case of each trial as it was asked; None if it is not installed or the trials were made with other cases."""
-    known = all_case_ids(store) if results.cases == cases_hash(store) else []
+    known = case_files(store) if results.cases == cases_hash(store) else {}
     asked: dict[tuple[str, str], Instance | None] = {}
     for case, name in {trial.key for trial in results.trials}:
         try:
