@@ -5,7 +5,7 @@ All of them are read strictly, so that a misspelt key is an error and not a valu
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -19,11 +19,14 @@ from irsim.bundled.templates.store import TemplateError, load
 from irsim.common.text import clean
 from irsim.common.yaml.plain import read_plain_yaml
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest
+from irsim.diagnostics.errors import InputError
+from irsim.policies.catalog import is_network
+from irsim.scenario.behavior_override import AS_WRITTEN, behavior_text, parse_behavior
 from irsim.scenario.messages.translate import located
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
-__all__ = ["Expanded", "expand"]
+__all__ = ["Expanded", "expand", "of_suite", "placed", "under_each_policy"]
 
 
 def expand(suite: Suite, file: Path) -> list[Expanded]:
@@ -132,6 +135,11 @@ class Expanded:
     data: dict[str, Any] = field(repr=False)
     folder: Path = field(repr=False)
 
+    def document(self, data: Mapping[str, Any] | None = None) -> Document:
+        """The scenario, or another one in its place, ready to read."""
+        text = yaml.safe_dump(dict(self.data if data is None else data), sort_keys=False, allow_unicode=True)
+        return load_text(text, name=self.name, path=str(self.folder / "scenario.yaml"))
+
 
 def check_scenarios(suite: Suite, made: Sequence[Expanded], file: Path) -> None:
     """Check that scenarios of a suite have only keys and values that count.
@@ -146,17 +154,14 @@ def check_scenarios(suite: Suite, made: Sequence[Expanded], file: Path) -> None:
     """
     problems: dict[tuple[Any, ...], Diagnostic] = {}
     for one in made:
-        text = yaml.safe_dump(one.data, sort_keys=False, allow_unicode=True)
-        document = load_text(text, name=one.name, path=str(one.folder / "scenario.yaml"))
-        for item in read(document, strict=True).errors:
-            problems.setdefault((one.family, item.code, item.path, item.message), _of_suite(item, one, suite))
+        for item in read(one.document(), strict=True).errors:
+            problems.setdefault((one.family, item.code, item.path, item.message), of_suite(item, one, suite))
     if problems:
-        written = load_path(file) if file.is_file() else Document(None)
-        raise suite_error(file, [_placed(item, suite, written, file) for item in problems.values()])
+        raise suite_error(file, placed(list(problems.values()), suite, file))
 
 
-def _of_suite(item: Diagnostic, one: Expanded, suite: Suite) -> Diagnostic:
-    """A problem of a scenario as one of its suite: with the name of the scenario and the path in the suite file."""
+def of_suite(item: Diagnostic, one: Expanded, suite: Suite) -> Diagnostic:
+    """A finding of a scenario as one of its suite: with the name of the scenario and the path in the suite file."""
     index = next(number for number, each in enumerate(suite.scenarios) if each.name == one.family)
     where = format_path(item.path)
     message, fix = f"scenario {one.family!r}: {where}: {item.message}", item.fix
@@ -172,7 +177,7 @@ def _of_suite(item: Diagnostic, one: Expanded, suite: Suite) -> Diagnostic:
         path = (*path, "scenario", *item.path)
     elif suite.scenarios[index].file is not None:
         path = (*path, "file", *item.path)
-    return replace(item, path=path, message=message, fix=fix, line=None, column=None, edit=None, severity="error")
+    return replace(item, path=path, message=message, fix=fix, line=None, column=None, edit=None)
 
 
 def _varied(item: Diagnostic, values: Mapping[str, Any]) -> str | None:
@@ -186,6 +191,18 @@ def _place_in_vary(scenario: SuiteScenario, key: str, values: Mapping[str, Any])
     return ("vary", scenario.vary.index(dict(values)), key)
 
 
+def placed(items: Sequence[Diagnostic], suite: Suite, file: Path) -> list[Diagnostic]:
+    """Findings with their position: in the suite file, or in the scenario file that the suite names.
+
+    Args:
+        items: Findings of the suite, see :func:`of_suite`.
+        suite: The suite.
+        file: Where it was read from.
+    """
+    written = load_path(file) if file.is_file() else Document(None)
+    return [_placed(item, suite, written, file) for item in items]
+
+
 def _placed(item: Diagnostic, suite: Suite, written: Document, file: Path) -> Diagnostic:
     """A problem with its position: in the suite file, or in the scenario file that the suite names."""
     if not (isinstance(written.data, Mapping) and written.data.get("suite") == suite.suite):
@@ -194,3 +211,26 @@ def _placed(item: Diagnostic, suite: Suite, written: Document, file: Path) -> Di
         named = file.parent / str(suite.scenarios[int(item.path[1])].file)
         return located(replace(item, path=item.path[3:]), load_path(named))
     return located(item, written)
+
+
+def under_each_policy(one: Expanded, suite: Suite) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """A scenario of a suite under each behavior that the suite compares, with the name of the policy."""
+    texts = {name: behavior_text(policy) for name, policy in suite.policies.items()}
+    for name, text in texts.items():
+        if text == AS_WRITTEN or is_network(text):
+            continue
+        try:
+            options = parse_behavior(text)
+        except InputError:
+            continue
+        yield name, {**one.data, "robot": [_with(entry, options) for entry in _entries(one.data.get("robot"))]}
+
+
+def _entries(given: Any) -> list[dict[str, Any]]:
+    entries = given if isinstance(given, list) else [] if given is None else [given]
+    return [dict(entry) for entry in entries]
+
+
+def _with(entry: dict[str, Any], options: Mapping[str, Any] | None) -> dict[str, Any]:
+    """An entry of robots whose behavior is another one."""
+    return {**{key: value for key, value in entry.items() if key != "group_behavior"}, "behavior": options}

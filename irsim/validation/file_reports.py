@@ -16,6 +16,7 @@ from irsim.learning.tasks.team import team_of
 from irsim.results.validation import ValidationReport
 from irsim.scenario.messages.translate import located
 from irsim.scenario.yaml.document import load_path
+from irsim.validation.suite_checks import suite_warnings
 from irsim.validation.validate import report
 
 __all__ = ["suite_report", "task_report"]
@@ -28,12 +29,14 @@ def suite_report(word: str) -> ValidationReport:
         word: Name of a bundled suite, or path of a suite file.
     """
     try:
-        suite, _ = load_suite(word)
+        suite, file = load_suite(word)
         plan = suite_plan(word)
+        warnings = suite_warnings(suite, file)
     except SuiteError as error:
         return report(word, [_of_this_file(item, word) for item in error.diagnostics] or [_whole(error)])
     size = f"{len(plan.scenarios)} scenarios x {len(plan.policies)} policies x {len(plan.seeds)} seeds"
-    return report(word, [], f"suite {suite.suite}, {size}")
+    own = [replace(item, file=None) if item.file == str(file) else _of_this_file(item, word) for item in warnings]
+    return report(word, own, f"suite {suite.suite}, {size}")
 
 
 def task_report(file: str) -> ValidationReport:
