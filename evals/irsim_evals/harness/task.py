@@ -28,8 +28,7 @@ from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.grader.outcome import Verdict
 from irsim_evals.harness.arms import Side, briefing, skill_folders
-from irsim_evals.harness.command import run_command
-from irsim_evals.harness.folder import Folder, FolderError
+from irsim_evals.harness.folder import Folder, FolderError, run_command
 from irsim_evals.harness.recording import RecordingEnds
 
 __all__ = ["SCORER", "Session", "Work", "build_task"]

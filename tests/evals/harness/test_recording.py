@@ -13,9 +13,8 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.store import case_of, golds_of
 from irsim_evals.grader.outcome import Cost
 from irsim_evals.harness.arms import MODEL_ARMS, Side, briefing, skill_folders, skills_hash
-from irsim_evals.harness.command import run_command
 from irsim_evals.harness.distractors import build_office
-from irsim_evals.harness.folder import Folder, FolderError
+from irsim_evals.harness.folder import Folder, FolderError, run_command
 from irsim_evals.harness.prices import known_price
 from irsim_evals.harness.recording import (
     Attempt,

@@ -1,17 +1,18 @@
-"""Corridors, doorways and dead ends, measured by straight looks through the world."""
+"""Corridors, doorways, dead ends and rooms, measured by straight looks through the world."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import shapely
 import shapely.affinity
 
-from irsim_evals.grader.matching import Counted, Match, Quantity, matches, show
+from irsim_evals.grader.matching import Counted, Kind, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register, travellers
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, measured, register, travellers
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import GradedBody
@@ -33,6 +34,10 @@ _BEFORE = 0.1
 """Distance [m] of the first section from the back of the pocket."""
 _RAYS = 91
 """Directions in which gaps between the walls are looked for."""
+_ROOM: dict[str, Kind] = {"long_side": "length", "short_side": "length", "area": "length"}
+"""Measures of a room."""
+_FINE = 0.01
+"""Distance [m] between the sections of a room; ten times the thickness that a line has as its wall."""
 
 
 def along(start: Point, direction: float, distance: float) -> Point:
@@ -241,3 +246,51 @@ def _gap(scene: GradedScene, inside: Point, heading: float, far: float) -> Point
         if free_length(scene.solid, inside, direction, far) >= far:
             return along(inside, direction, far)
     return None
+
+
+@register("room", "relations")
+class Room(OfBodies, ScenePredicate):
+    """The room in which every body of a selection stands: what a disc as wide as `doors` covers on its ways from there,
+    with the right angles that it leaves. Who stands in a door is in no room and fails, as an empty selection does."""
+
+    doors: Quantity
+    """Openings narrower than this are closed [m]."""
+    what: Literal["position", "goal"] = "position"
+    """The place that the room is round: where the body starts, or its last goal."""
+    long_side: Match | None = None
+    """Accepted lengths of the room [m], along the longer side of the smallest rectangle round it, as far as the room is
+    as wide as `doors` there; what stands in its middle makes it no shorter."""
+    short_side: Match | None = None
+    """Accepted widths, measured in the same way across that [m]."""
+    area: Match | None = None
+    """Accepted free areas between these sides [m²]."""
+
+    def observe(self, material: Material, scene: GradedScene) -> Observation:
+        """Measure each room."""
+        bodies = travellers(self, material, scene) if self.what == "goal" else self.bodies(material, scene)
+        of, key = f"the room round the {self.what} of {self.of}", "goal" if self.what == "goal" else "state"
+        return measured(self, of, bodies, _ROOM, partial(self._measures, scene), key)
+
+    def _measures(self, scene: GradedScene, body: GradedBody) -> dict[str, float | None]:
+        free = shapely.difference(shapely.box(*scene.bounds), scene.solid.buffer(_FINE / 20, cap_style="flat"))
+        parts = shapely.get_parts(shapely.buffer(free, -self.doors / 2))
+        rooms = shapely.buffer(parts, self.doors / 2, join_style="mitre", mitre_limit=1.42)  # fills right angles
+        place = shapely.Point(body.position if self.what == "position" or body.goal is None else body.goal[:2])
+        around = shapely.intersection(rooms[shapely.covers(rooms, place)], free)
+        if len(around) != 1:
+            return dict.fromkeys(_ROOM)
+        (x0, y0), (x1, y1) = shapely.get_coordinates(shapely.oriented_envelope(around[0]))[:2]
+        turned = shapely.affinity.rotate(around[0], -math.atan2(y1 - y0, x1 - x0), (0, 0), use_radians=True)
+        (left, right), (low, high) = (self._span(room) for room in (turned, shapely.transform(turned, np.fliplr)))
+        short, long = sorted((right - left, high - low))
+        area = shapely.intersection(turned, shapely.box(left, low, right, high)).area
+        return {"long_side": long, "short_side": short, "area": float(area)}
+
+    def _span(self, room: Any) -> tuple[float, float]:
+        """The first and the last place along x at which the section across a room is wide enough."""
+        x0, y0, x1, y1 = room.bounds
+        at = np.linspace(x0, x1, math.ceil((x1 - x0) / _FINE) + 1)
+        cut = shapely.intersection(shapely.linestrings([[[x, y0], [x, y1]] for x in at.tolist()]), room)
+        parts, section = shapely.get_parts(cut, return_index=True)
+        wide = at[section[shapely.length(parts) >= self.doors]]
+        return float(wide.min()), float(wide.max())
