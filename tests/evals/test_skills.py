@@ -198,7 +198,7 @@ def test_an_answer_of_several_scenarios_is_graded_one_by_one() -> None:
     seen = {one.assertion: (one.passed, one.observed) for one in verdict.outcomes}
     assert seen["five"] == (True, "obstacles: 5")
     assert seen["twenty-five"] == (True, "obstacles: 25")
-    assert seen["fifteen"] == (False, "LookupError: there is no file crowd-15.yaml")
+    assert seen["fifteen"] == (False, "there is no file crowd-15.yaml")
     assert seen["behaviors"] == (True, "1: result.json")
     assert seen["seeds"] == (False, "1: result.json; result.json has at rows[*].success.n: 10, 9")
 

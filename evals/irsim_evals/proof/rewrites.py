@@ -11,13 +11,13 @@ import yaml
 
 from irsim_evals.cases.model import Case
 from irsim_evals.grader.scene import GradedScene
-from irsim_evals.proof import rewrites_of_layout  # it registers its rewrites when it is imported
 from irsim_evals.proof.operators import NUMBER, REWRITES, Data, dump, entries, plain, rewrite, sensors_of
+from irsim_evals.proof.rewrites_of_layout import mirrored  # the module registers its rewrites when it is imported
 
 __all__ = ["rewrites_of", "rewrites_of_edit"]
 
-_MIRRORS = {"mirror_x": rewrites_of_layout.mirrored_left_right, "mirror_y": rewrites_of_layout.mirrored_up_down}
-"""Fact of the world that a case leaves free → rewrite."""
+_MIRRORS = {"mirror_x": "mirrored_left_right", "mirror_y": "mirrored_up_down"}
+"""Fact of the world that a case leaves free → rewrite along x, and along y."""
 _KEY = re.compile(r"(?<![\w\"'])([a-z_]+): ")
 
 
@@ -34,13 +34,16 @@ def rewrites_of(case: Case, name: str, text: str, scene: GradedScene) -> Iterato
         yield from rewrites_of_edit(case.files[name], text) if text != case.files[name] else ()
         return
     free = {fact for pin in case.free if pin.of == "world" for fact in pin.facts}
-    mirrors = {mirror.__name__: mirror for fact, mirror in _MIRRORS.items() if fact in free}
     data = yaml.safe_load(text)
-    for operator, make in {**REWRITES, **mirrors}.items():
+    for operator, make in REWRITES.items():
         rewritten = make(text, plain(data), scene)
         same = text if make is block_style else dump(data)
         if rewritten not in (None, text, same):
             yield operator, str(rewritten)
+    for axis, (fact, operator) in enumerate(_MIRRORS.items()):
+        made = mirrored(plain(data), axis) if fact in free else None
+        if made not in (None, data):
+            yield operator, dump(made)
 
 
 def rewrites_of_edit(given: str, text: str) -> Iterator[tuple[str, str]]:

@@ -168,15 +168,3 @@ def mirrored(data: Data, axis: int) -> Data | None:
                 entry["state"] = [*entry["state"], math.pi if axis == 0 else 0.0]
             shape["vertices"] = [[x, -y] for x, y in shape["vertices"]]
     return data
-
-
-def mirrored_left_right(text: str, data: Data, scene: GradedScene) -> str | None:
-    """Left and right exchanged, for cases that leave it free."""
-    made = mirrored(data, 0)
-    return None if made is None else dump(made)
-
-
-def mirrored_up_down(text: str, data: Data, scene: GradedScene) -> str | None:
-    """Up and down exchanged, for cases that leave it free."""
-    made = mirrored(data, 1)
-    return None if made is None else dump(made)

@@ -48,7 +48,6 @@ class Proof(BaseModel):
     rows: list[ProofRow]
     wrong: list[dict[str, Any]] = []
     left_out: dict[str, Count] = {}
-    seconds: float = 0.0
 
     def totals(self) -> list[tuple[str, int, Interval]]:
         """Wrong answers that were accepted and right ones that were rejected: name, number, share of all of them."""
