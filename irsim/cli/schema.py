@@ -19,7 +19,7 @@ from irsim.scenario.model.json_schema import schema_text
 from irsim.scenario.yaml.document import load_path
 from irsim.scenario.yaml.modeline import schema_reference, with_modeline
 
-__all__ = ["schema"]
+__all__ = ["is_current", "schema"]
 
 
 def schema(
@@ -61,17 +61,28 @@ def schema(
     kinds = [kind] if kind is not None else ["scenario"] if out is not None else list(makers)
     stale = False
     for one in kinds:
-        target, text = out or resources.schema_file(one), makers[one]()
-        if not check:
-            write_atomically(target, text)
-            typer.echo(f"wrote {target}")
-        elif not target.is_file() or target.read_text(encoding="utf-8") != text:
-            typer.echo(f"{target} is out of date: run irsim schema to update it", err=True)
-            stale = True
-        else:
-            typer.echo(f"{target} is up to date")
+        stale |= not is_current(out or resources.schema_file(one), makers[one](), check, "irsim schema")
     if stale:
         raise typer.Exit(FAILED)
+
+
+def is_current(target: Path, text: str, check: bool, command: str) -> bool:
+    """Write the file of a schema, or say whether it is up to date.
+
+    Args:
+        target: The file.
+        text: The schema.
+        check: Whether the file is compared rather than written.
+        command: Command that writes it, for the message.
+    """
+    current = not check or (target.is_file() and target.read_text(encoding="utf-8") == text)
+    if not current:
+        typer.echo(f"{target} is out of date: run {command} to update it", err=True)
+        return False
+    if not check:
+        write_atomically(target, text)
+    typer.echo(f"{target} is up to date" if check else f"wrote {target}")
+    return True
 
 
 def _connect(scenario: Path) -> None:

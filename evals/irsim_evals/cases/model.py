@@ -160,11 +160,8 @@ class Pin(Record):
     of: PinnedName = "all"
     """Selection of the bodies; ``world`` for the world itself, ``reply`` and ``text`` for the words of the answer."""
     facts: Annotated[list[Fact], Listed()]
-    """Facts: ``count``, ``kinematics``, ``size``, ``shape``, ``pose`` (``position``, ``heading``), ``goal``,
-    ``behavior``, ``limits`` (``forward``, ``backward``, ``turn``, …), ``sensors`` (``range``, ``beams``, ``opening``,
-    …), ``color``, ``name``, ``way`` (from start to goal), ``cover`` (of what is fixed: it may grow, not shrink or
-    move); of the world ``size``, ``origin``, ``map``, ``times``, ``modes``, and where they are free ``mirror_x`` and
-    ``mirror_y``; of the reply ``reply``, ``replies``; of the text ``comments``, ``layout``."""
+    """Facts, such as ``size``, ``pose``, ``limits`` and ``sensors``, which stand for several, ``way`` (from start to
+    goal) and ``cover`` (of what is fixed: it may grow, not shrink or move); those of each ``of`` are in the guide."""
     why: str = ""
     """Reason, where it is not plain from the prompt."""
 

@@ -9,7 +9,9 @@ from typing import Annotated
 
 import typer
 
+from irsim.cli.guard import FAILED
 from irsim.cli.output import console
+from irsim.cli.schema import is_current
 from irsim.common.text import plural
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.schema import schema_text
@@ -88,12 +90,5 @@ def schema(
     out: Annotated[Path, typer.Option("--out", "-o", help="File to write.")] = _PATH,
 ) -> None:
     """Write the JSON Schema of case files, which editors use for completion."""
-    text = schema_text()
-    if not check:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        out.write_text(text, encoding="utf-8")
-        return
-    if not out.is_file() or out.read_text(encoding="utf-8") != text:
-        sys.stderr.write(f"{out} is out of date: run irsim-evals schema\n")
-        raise typer.Exit(1)
-    sys.stdout.write(f"{out} is up to date\n")
+    if not is_current(out, schema_text(), check, "irsim-evals schema"):
+        raise typer.Exit(FAILED)

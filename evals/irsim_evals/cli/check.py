@@ -29,8 +29,6 @@ _IDLE = {"empty_holds": "an empty world fulfils it", "unbroken": "no change of t
 """Meaning of what is reported of assertions that tell nothing."""
 _MAX_LISTED = 10
 """Largest number of case files for which each valid file gets a line of its own."""
-_MAX_PARENTS = 3
-"""Folders above a case file beside which its golds may lie: its own, the folder of cases, and that of a set in it."""
 _MAX_FAILED = 3
 """Failed assertions of a gold that are listed."""
 
@@ -86,7 +84,7 @@ def _beside(path: Path, store: Store) -> Store:
     """Where the golds of a file lie: for files of the store as it says, for others in the nearest folder of golds."""
     if path.resolve().is_relative_to(store.cases.resolve()):
         return store
-    places = [parent / store.golds.name for parent in path.resolve().parents[:_MAX_PARENTS]]
+    places = [parent / store.golds.name for parent in path.resolve().parents[:3]]  # a set lies in the folder of cases
     return store._replace(golds=next((place for place in places if place.is_dir()), places[len(places) > 1]))
 
 

@@ -269,14 +269,10 @@ def _print_table(verdicts: Sequence[Verdict], out: Console) -> None:
     for verdict in verdicts:
         held = len(verdict.outcomes) - len(verdict.failed())
         numbers = [getattr(verdict.cost, name) for name in costs]
-        table.add_row(
-            verdict.name,
-            Text("PASS", style="bold green") if verdict.strict else Text("FAIL", style="bold red"),
-            *[f"{held} of {len(verdict.outcomes)}"] * wide,
-            f"{verdict.rate:.0%}",
-            *["" if verdict.strict else verdict.reached] * wide,
-            *("?" if number is None else f"{number:,}" for number in numbers),
-        )
+        said = Text("PASS", style="bold green") if verdict.strict else Text("FAIL", style="bold red")
+        counts = ("?" if number is None else f"{number:,}" for number in numbers)
+        shown = [f"{held} of {len(verdict.outcomes)}"] * wide, ["" if verdict.strict else verdict.reached] * wide
+        table.add_row(verdict.name, said, *shown[0], f"{verdict.rate:.0%}", *shown[1], *counts)
     out.print(table)
 
 

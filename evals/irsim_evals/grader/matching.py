@@ -228,13 +228,7 @@ class Match(BaseModel):
 def fitting(
     said: dict[str, Match], kinds: Mapping[str, Kind], words: Mapping[str, Collection[str]], others: Kind = "name"
 ) -> dict[str, Match]:
-    """Accepted values as they are, if each of them can be a value of what it is about.
-
-    Args:
-        said: Name → accepted values.
-        kinds: Name → kind.
-        words: Name → words that it can be; it can be any word if there are none.
-        others: Kind of the other names.
+    """Accepted values by name as they are, if each can be a value of its kind and, where words are known, one of them.
 
     Raises:
         ValidationError: A word is misspelt, or a text is not a number; with its place.

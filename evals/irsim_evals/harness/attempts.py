@@ -156,17 +156,12 @@ def _cost_of(sample: Any, work: Work | None) -> Cost:
 
     paid = [usage.total_cost for usage in used]
     return Cost(
-        calls=len(calls),
-        errors=sum(event.error is not None for event in calls),
-        tokens=total("total_tokens"),
-        seconds=round(work.seconds, 2) if work is not None else None,
-        turns=len(_answers(sample)),
-        input_tokens=total("input_tokens"),
-        output_tokens=total("output_tokens"),
+        calls=len(calls), errors=sum(event.error is not None for event in calls), turns=len(_answers(sample)),
+        tokens=total("total_tokens"), input_tokens=total("input_tokens"), output_tokens=total("output_tokens"),
         cache_tokens=total("input_tokens_cache_write", "input_tokens_cache_read"),
         dollars=None if not paid or None in paid else round(sum(paid), 6),
-        steps=_steps(sample.messages),
-    )
+        seconds=round(work.seconds, 2) if work is not None else None, steps=_steps(sample.messages),
+    )  # fmt: skip
 
 
 def _steps(messages: Sequence[Any]) -> list[Step]:

@@ -166,20 +166,15 @@ def compare(before: Sequence[Trial], after: Sequence[Trial], first: str, second:
             (broken if a > 0.5 else fixed).append(change)
     changed = len(fixed) + len(broken)
     return Comparison(
-        first=first,
-        second=second,
-        pairs=len(common),
+        first=first, second=second, pairs=len(common), fixed=fixed, broken=broken, p=mcnemar(len(broken), len(fixed)),
         passed=(sum(a > 0.5 for a, _ in shares), sum(b > 0.5 for _, b in shares)),
-        fixed=fixed,
-        broken=broken,
         missing=sorted(name_of(*key) for key in set(one) - set(two)),
         new=sorted(name_of(*key) for key in set(two) - set(one)),
-        p=mcnemar(len(broken), len(fixed)),
         difference=paired_bootstrap(differences),
         smallest_difference=smallest_difference(len(common), changed / len(common) if common else 0.0),
         costs=[cost for unit in _UNITS if (cost := _cost(unit, [(one[key], two[key]) for key in common])) is not None],
         repeated=any(len(side[key]) > 1 for side in (one, two) for key in common),
-    )
+    )  # fmt: skip
 
 
 def _cost(unit: str, pairs: Sequence[tuple[Sequence[Trial], Sequence[Trial]]]) -> CostDifference | None:

@@ -69,17 +69,13 @@ def content_of(
     by_arm = {name: [trial for trial in trials if trial.arm == name] for name in names}
     pairs = [compare(by_arm[a], by_arm[b], a, b) for a, b in pairwise(names)]
     return Content(
-        title=title,
-        results=results,
-        asked=asked,
-        arms=[summarize(trials, name) for name in names],
+        title=title, results=results, asked=asked, proof=proof, arms=[summarize(trials, name) for name in names],
         categories=table_by(trials, names, lambda trial: trial.category),
         levels=table_by(trials, names, lambda trial: [f"level {trial.level}"]),
         comparisons=[one for one in pairs if one.pairs],
         failures={name: counted(category_of(t.verdict, t.ended) for t in own) for name, own in by_arm.items()},
-        proof=proof,
         gallery=draw_trials(trials, asked, progress) if pictures else None,
-    )
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

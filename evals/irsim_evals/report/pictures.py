@@ -135,15 +135,10 @@ def _keep(gallery: Gallery, name: str, drawn: list[Drawn] | str) -> list[str] | 
 def _job(trial: Trial, asked: Instance | None, scenario: tuple[str, str]) -> Job:
     """The job of drawing a trial: worlds with the seeds that the failures were observed with, else with the case's."""
     seeds = {one.stage == "behavior": one.seed for one in reversed(trial.verdict.failed()) if one.seed is not None}
-    if asked is None:
-        return Job(*scenario, seeds.get(False, 0), seeds.get(True, 0), _EPISODE_S)
-    case = asked.case
-    plan = case.episodes[0] if case.episodes else None
+    plan = asked.case.episodes[0] if asked and asked.case.episodes else None
+    start = asked.case.seeds[0] if asked else 0
     return Job(
-        *scenario,
-        start_seed=seeds.get(False, case.seeds[0]),
-        end_seed=seeds.get(True, plan.seeds[0] if plan else case.seeds[0]),
-        seconds=float(plan.seconds) if plan else _EPISODE_S,
-        behavior=plan.behavior if plan else None,
-        pictures=given_pictures(asked),
-    )
+        *scenario, start_seed=seeds.get(False, start), end_seed=seeds.get(True, plan.seeds[0] if plan else start),
+        seconds=float(plan.seconds) if plan else _EPISODE_S, behavior=plan.behavior if plan else None,
+        pictures=given_pictures(asked) if asked else {},
+    )  # fmt: skip

@@ -103,16 +103,11 @@ def summarize(trials: Sequence[Trial], arm: str) -> ArmSummary:
     rates = [math.fsum(t.verdict.rate for t in group) / len(group) for group in by_case.values()]
     most = min(max((total for _, total in counts), default=0), _MAX_K)
     return ArmSummary(
-        arm=arm,
-        models=sorted({trial.model for trial in own if trial.model}),
-        cases=len(by_case),
-        trials=Cell(sum(passed for passed, _ in counts), len(own)),
-        strict=_mean_interval([passed / total for passed, total in counts]),
-        rate=_mean_interval(rates),
-        funnel=_funnel(own),
+        arm=arm, models=sorted({trial.model for trial in own if trial.model}), cases=len(by_case),
+        trials=Cell(sum(passed for passed, _ in counts), len(own)), rate=_mean_interval(rates), funnel=_funnel(own),
+        strict=_mean_interval([passed / total for passed, total in counts]), cost=_cost(own),
         pass_hat={k: mean_pass_hat_k(counts, k) for k in range(1, most + 1)},
-        cost=_cost(own),
-    )
+    )  # fmt: skip
 
 
 def table_by(trials: Sequence[Trial], arms: Sequence[str], names: Callable[[Trial], Iterable[str]]) -> Table:
