@@ -7,6 +7,7 @@ import math
 import os
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -286,3 +287,46 @@ def test_colors_differ_only_if_they_look_different() -> None:
 
 def test_the_schema_of_cases_is_up_to_date() -> None:
     assert Path("schema/eval-case.schema.json").read_text(encoding="utf-8") == schema_text()
+
+
+FAR = {"arrive": {"of": "robots", "share": 0}, "says": {"any_of": ["not arrive"]}}
+
+
+@pytest.mark.parametrize(
+    ("ways", "reply", "observed"),
+    [
+        ([{"arrive": {"of": "robots"}}, FAR], "", ""),
+        ([{"arrive": {"of": "robots", "within": 3}}, {"moves": {"of": "robots", "path": {"ge": 5}}}], "", ""),
+        ([{"arrive": {"of": "robots", "within": 3}}, {"count": {"of": "robots", "number": 1}}], "", ""),
+        ([{"near": {"of": "robots", "to": "all", "distance": 1}}, {"arrive": {"of": "robots"}}], "", ""),
+        ([{"each": {"of": "robots", "has": {"x": {"ge": "= obstacles.x"}}}}, {"arrive": {"of": "robots"}}], "", ""),
+        ([{"arrive": {"of": "robots", "within": 3}}, FAR], "It does not arrive.", "0%; robot_0: after"),
+        ([{"arrive": {"of": "robots"}, "says": {"any_of": ["arrives"]}}, FAR], "It does not arrive.", "100%"),
+        ([{"sees": {"of": "robots", "number": 3}}, {"state_at": {"of": "robots", "at": 1, "x": 9}}], "", "robot_0"),
+    ],
+)
+def test_one_of_several_assertions_is_enough(ways: Any, reply: str, observed: str) -> None:
+    instance = made_up(episodes=[{"seconds": 30, "assert": [{"id": "either", "any": ways}]}])
+    wrong = failures(graded(instance, RIGHT, reply))
+    assert [name for name, *_ in wrong] == ["either"] * bool(observed)
+    assert observed in "; ".join(seen for *_, seen in wrong)
+    assert all(" or " in expected for _, expected, _ in wrong)
+
+
+@pytest.mark.parametrize(("number", "right"), [(1, True), (2, False)])
+def test_one_of_several_facts_of_the_start_is_enough(number: int, right: bool) -> None:
+    ways = [{"count": {"of": "robots", "number": number}}, {"sees": {"of": "robots", "number": 1}}]
+    assert graded(made_up({"id": "either", "any": ways}), RIGHT).strict == right
+
+
+@pytest.mark.parametrize(
+    ("ways", "what"),
+    [
+        ([{"cuont": {"of": "robots", "number": 1}}], "no predicate 'cuont'"),
+        ([{}], "no predicate ''"),
+        ([{"count": {"of": "robots", "number": {"ge": "= robts.x"}}}], "there is no selection 'robts'"),
+    ],
+)
+def test_alternatives_are_known_and_in_their_place(ways: Any, what: str) -> None:
+    with pytest.raises(ValueError, match=what):
+        made_up({"id": "either", "any": ways})

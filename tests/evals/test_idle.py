@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from irsim_evals.grader.artefact import Answer
-from irsim_evals.proof.idle import idle_assertions
+from irsim_evals.proof.prove import idle_assertions
 from tests.evals.conftest import RIGHT, made_up
 
 

@@ -35,10 +35,11 @@ def case_schema() -> dict[str, Any]:
         place["properties"]["assert"]["anyOf"][0]["items"] = {
             "$ref": "#/$defs/Assertion", "oneOf": _one_of(sorted(names)),
         }  # fmt: skip
-    of_world = {name: said[name] for name, one in registered().items() if one.subject in ("scene", "seeds")}
-    parts["EveryScenario"]["properties"]["that"]["anyOf"][0]["items"] = {
-        "type": "object", "properties": of_world, "additionalProperties": False, "minProperties": 1, "maxProperties": 1,
-    }  # fmt: skip
+    of_world = [name for name, one in registered().items() if one.subject in ("scene", "seeds")]
+    parts["AnyOf"] = {"type": "array", "description": parts["AnyOf"]["description"]}
+    several = {"type": "object", "additionalProperties": False, "minProperties": 1}
+    for listed, names in ((parts["EveryScenario"]["properties"]["that"], of_world), (parts["AnyOf"], [*predicates])):
+        listed["items"] = {**several, "properties": {name: said[name] for name in names}}
     return schema_of_file({**schema, "title": "A case of irsim-evals"})
 
 

@@ -19,7 +19,7 @@ from irsim_evals.cases.reading import CaseError
 from irsim_evals.cases.store import Instance, Store, case_files, golds_of, instance_of
 from irsim_evals.cli.choice import CasesFolder, GoldsFolder, chosen, store_of
 from irsim_evals.grader.limited import grade_answer
-from irsim_evals.proof.idle import idle_assertions
+from irsim_evals.proof.prove import idle_assertions
 
 __all__ = ["MIN_GOLDS", "check"]
 

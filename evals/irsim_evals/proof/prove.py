@@ -1,21 +1,22 @@
-"""The proof itself: golds, rewrites, mutants and null agents of every case, and one table of what came out."""
+"""The proof itself: golds, rewrites, mutants and null agents of every case, and assertions that tell nothing."""
 
 from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from irsim_evals.cases.store import PUBLISHED, Store, case_ids
+from irsim_evals.cases.store import PUBLISHED, Instance, Store, case_ids
+from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.limited import SECONDS, LimitError, run_all
 from irsim_evals.grader.outcome import NOT_REACHED, Outcome, Verdict
 from irsim_evals.proof.oracle.opinions import opinions
-from irsim_evals.proof.trials import RIGHT, Kind, Trial, kind_of, trials_of
+from irsim_evals.proof.trials import RIGHT, Kind, Trial, changes_of, kind_of, trials_of
 
-__all__ = ["Proof", "as_case_rows", "as_rows", "prove", "tried"]
+__all__ = ["Proof", "as_case_rows", "as_rows", "idle_assertions", "prove", "tried"]
 
 _SECOND_SHARE = 0.25
 """Share of the trials that are also given to the second implementation."""
@@ -27,6 +28,11 @@ _ERRORS: dict[str, tuple[Kind, ...]] = {
     "false rejects": RIGHT,
 }
 """Kind of wrong verdicts → trials that can have one."""
+_EMPTY = Answer("empty", {"scenario.yaml": "world: {width: 10, height: 10}\n"})
+_BATCH = 40
+"""Number of changed answers that are graded before it is looked whether any assertion is left."""
+_MAX_TRIALS = 200
+"""Number of changed answers that are graded at most."""
 
 
 @dataclass
@@ -156,3 +162,28 @@ def as_case_rows(proof: Proof) -> list[dict[str, Any]]:
         }
         for case in sorted({case for case, _ in proof.by_case})
     ]
+
+
+def idle_assertions(instance: Instance, golds: Sequence[Answer]) -> Iterator[tuple[str, str]]:
+    """Assertions that are reported to the author of a case: id, and ``empty_holds`` or ``unbroken``.
+
+    Args:
+        instance: The case.
+        golds: Its right answers.
+    """
+    left = [item.id for item in instance.case.assertions().values() if item.when != "unbuilt"]
+    empty = _broken(instance, _EMPTY)
+    yield from ((name, "empty_holds") for name in left if name not in empty)
+    trials = [trial for gold in golds for trial in changes_of(instance, gold, Counter()) if trial.kind != "rewrite"]
+    random.Random(0).shuffle(trials)
+    for begin in range(0, min(len(trials), _MAX_TRIALS), _BATCH):
+        jobs = [(instance, trial.answer) for trial in trials[begin : begin + _BATCH]]
+        done = run_all(_broken, jobs, None, SECONDS, "grading") if left else []
+        broken = {name for names in done if not isinstance(names, LimitError) for name in names}
+        left = [name for name in left if name not in broken]
+    yield from ((name, "unbroken") for name in left)
+
+
+def _broken(instance: Instance, answer: Answer) -> list[str]:
+    """The assertions that an answer does not fulfil, as far as they were reached."""
+    return [one.assertion for one in grade(instance, answer).failed() if one.observed != NOT_REACHED]

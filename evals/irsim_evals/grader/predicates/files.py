@@ -156,55 +156,36 @@ class Edits(AnswerPredicate):
     def observe(self, material: Material) -> Observation:
         """Compare the files."""
         before, after = material.given.get(self.base), material.answer.files.get(self.file or material.main or "")
-        expected = self._words()
+        asked, of, where = dict[str, list[str]](), f"an edit of {self.base}", list[str]()
         if before is None or after is None:
-            return Observation(False, expected, "there is nothing to compare")
-        diff = compared(before, after)
-        wrong: list[str] = []
-        where = None
-        if self.only is not None:
-            changed_paths = [path for change in diff.keys if change.change != "moved" for path in _places(change)]
-            odd = [path for path in changed_paths if not self._allowed(path)]
-            wrong += [f"{path} differs, too" for path in odd]
-            where = odd[0] if odd else None
-        if self.same is not None and diff.same != self.same:
-            wrong.append("they differ" if not diff.same else "nothing differs")
+            return Observation(False, of, "there is nothing to compare")
         try:
             data = read_plain_yaml(after, YamlLimits())
         except ContentError as error:
-            return Observation(False, expected, f"the new file cannot be read: {error.message}")
+            return Observation(False, of, f"the new file cannot be read: {error.message}")
+        diff = compared(before, after)
+        if self.only is not None:
+            changed = [path for change in diff.keys if change.change != "moved" for path in _places(change)]
+            where += [path for path in changed if not any(_covers(allowed, path) for allowed in self.only)]
+            words = f"only {', '.join(self.only)} differs" if self.only else "nothing else differs"
+            asked[words] = [f"{path} differs, too" for path in where]
         for path, match in self.must.items():
             value = value_at(data, path)
-            if not matches(match, value, "size"):
-                wrong.append(f"{path} is {show(value)}")
-                where = where or path
+            wrong = [path] * (not matches(match, value, "size"))
+            where += wrong
+            asked[f"{path} becomes {match.words()}"] = [f"{path} is {show(value)}" for path in wrong]
         if self.lines is not None:
-            changed = diff.lines_removed + diff.lines_added
-            if not matches(self.lines, changed, "count"):
-                wrong.append(f"{changed} lines were changed")
-        if self.keeps_comments and diff.comments_lost:
-            wrong.append(f"the comment {diff.comments_lost[0]!r} is gone")
-        for pattern in self.not_left:
-            if re.search(pattern, after):
-                wrong.append(f"it still holds {pattern!r}")
-        return Observation(not wrong, expected, "; ".join(wrong[:4]) if wrong else diff.summary, where)
-
-    def _words(self) -> str:
-        parts = []
-        if self.only is not None:
-            parts.append("only " + ", ".join(self.only) + " differs" if self.only else "nothing else differs")
-        parts += [f"{path} becomes {match.words()}" for path, match in self.must.items()]
-        if self.lines is not None:
-            parts.append(f"changed lines: {self.lines.words()}")
+            lines = diff.lines_removed + diff.lines_added
+            off = not matches(self.lines, lines, "count")
+            asked[f"changed lines: {self.lines.words()}"] = [f"{lines} lines were changed"] * off
         if self.keeps_comments:
-            parts.append("every comment is kept")
+            asked["every comment is kept"] = [f"the comment {lost!r} is gone" for lost in diff.comments_lost[:1]]
         if self.same is not None:
-            parts.append("the file is as it was" if self.same else "the file has changed")
-        parts += [f"no {pattern!r} is left" for pattern in self.not_left]
-        return ", ".join(parts)
-
-    def _allowed(self, path: str) -> bool:
-        return any(_covers(allowed, path) for allowed in self.only or [])
+            words = "the file is as it was" if self.same else "the file has changed"
+            asked[words] = ["nothing differs" if diff.same else "they differ"] * (diff.same != self.same)
+        asked |= {f"no {p!r} is left": [f"it still holds {p!r}"] * bool(re.search(p, after)) for p in self.not_left}
+        seen = "; ".join([problem for problems in asked.values() for problem in problems][:4])
+        return Observation(not seen, ", ".join(asked), seen or diff.summary, where[0] if where else None)
 
 
 def compared(before: str, after: str) -> ScenarioDiff:

@@ -1,25 +1,30 @@
-"""Answers with several scenarios: assertions about each of them, and comparisons of behaviors."""
+"""Assertions of which one is enough; answers with several scenarios, and comparisons of behaviors."""
 
 from __future__ import annotations
 
 import itertools
 import re
+from collections.abc import Collection
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import AfterValidator, ValidationInfo
+from pydantic import AfterValidator, ValidationInfo, model_validator
 
-from irsim.diagnostics.diagnostic import nearest
-from irsim.options.base import problem
 from irsim_evals.grader.artefact import scenarios_in
 from irsim_evals.grader.matching import Counted, Match, Quantity, matches
-from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register, registered
+from irsim_evals.grader.predicates._base import AnswerPredicate, EpisodePredicate, Observation, register, registered
 from irsim_evals.grader.predicates.reply import occurs
+from irsim_evals.grader.relations import related
 from irsim_evals.grader.runs_of_answers import Runs, runs_of
-from irsim_evals.grader.words import BehaviorName, Regex
+from irsim_evals.grader.words import BehaviorName, Regex, unknown
 
 if TYPE_CHECKING:
+    from irsim_evals.grader.episode import GradedEpisode
     from irsim_evals.grader.material import Material
+    from irsim_evals.grader.scene import GradedScene
 
+_WORLD = ["scene", "seeds"]
+"""Subjects of predicates about the world."""
 _SEED = 0
 """Seed of the worlds that are looked at."""
 _ROUNDING = 1
@@ -28,14 +33,51 @@ _SEEDS = (0, 1)
 """Seeds of the worlds that are compared."""
 
 
-def _known(item: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
-    known = {name: one for name, one in registered().items() if one.subject in ("scene", "seeds")}
-    name = next(iter(item), "")
-    if len(item) != 1 or name not in known:
-        near = nearest(name, known)
-        message = f"give exactly one predicate about the world, not {' and '.join(item) or 'none'}"
-        raise problem("unknown-value", message, allowed=list(known), fix=f"write {near}" if near else None)
-    return {name: known[name].model_validate(item[name], context=info.context)}
+def _known(item: dict[str, Any], info: ValidationInfo, subjects: Collection[str]) -> dict[str, Any]:
+    known = {name: one for name, one in registered().items() if one.subject in subjects}
+    for name in [name for name in item or [""] if name not in known]:
+        raise unknown("predicate", name, list(known))
+    return {name: known[name].model_validate(value, context=info.context) for name, value in item.items()}
+
+
+def _look(predicate: Any, material: Material, scene: GradedScene, episode: GradedEpisode | None = None) -> Observation:
+    """What a predicate observes of its subject."""
+    subjects: dict[str, list[Any]] = {"scene": [scene], "episode": [episode]}
+    try:
+        seen: Observation = related(predicate, material, scene).observe(material, *subjects.get(predicate.subject, []))
+    except LookupError as error:
+        return Observation(False, predicate.name, str(error))
+    return seen
+
+
+@register("any")
+class AnyOf(EpisodePredicate):
+    """At least one of some alternatives holds, about the world at its start, the episode or the answer: a list of
+    mappings of predicates, and all predicates of a mapping hold."""
+
+    at_start = True
+
+    ways: list[Annotated[dict[str, Any], AfterValidator(partial(_known, subjects=[*_WORLD, "episode", "answer"]))]]
+    """The alternatives; the list itself is the value of ``any``."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _listed(cls, value: Any) -> Any:
+        return value if isinstance(value, dict) else {"ways": value}
+
+    def _has(self, name: str) -> bool:
+        return any(getattr(one, name, False) for way in self.ways for one in way.values())
+
+    looks = property(lambda self: self._has("looks"))
+    exact = property(lambda self: self._has("exact"))
+
+    def observe(self, material: Material, episode: GradedEpisode) -> Observation:
+        """Try them in turn."""
+        tried = [[_look(one, material, episode.scene, episode) for one in way.values()] for way in self.ways]
+        failed = [[look for look in looks if not look.passed] for looks in tried]
+        chosen = [bad[0] if bad else looks[0] for bad, looks in zip(failed, tried, strict=True)]
+        words = " or ".join(look.expected for look in chosen), "; ".join(look.observed for look in chosen)
+        return Observation(not all(failed), *words, marks=[mark for look in chosen for mark in look.marks])
 
 
 @register("every_scenario", "facts")
@@ -44,8 +86,8 @@ class EveryScenario(AnswerPredicate):
 
     number: Match = Match(ge=1)
     """Accepted numbers of scenario files."""
-    that: list[Annotated[dict[str, Any], AfterValidator(_known)]]
-    """Assertions about the world: each is the name of a predicate with its keys."""
+    that: list[Annotated[dict[str, Any], AfterValidator(partial(_known, subjects=_WORLD))]]
+    """Assertions about the world: each is a mapping of predicates."""
 
     def observe(self, material: Material) -> Observation:
         """Open each of them."""
@@ -58,10 +100,8 @@ class EveryScenario(AnswerPredicate):
                 one = material.other(name)
             except LookupError as error:
                 return Observation(False, expected, str(error), name)
-            for item in self.that:
-                predicate: Any = next(iter(item.values()))
-                scene = predicate.subject == "scene"
-                observation: Observation = predicate.observe(one, one.scene(_SEED)) if scene else predicate.observe(one)
+            for predicate in [said for item in self.that for said in item.values()]:
+                observation = _look(predicate, one, one.scene(_SEED))
                 if not observation.passed:
                     words = f"{name}: {observation.expected}", f"{name}: {observation.observed}"
                     return Observation(False, *words, observation.yaml_path, _SEED, observation.marks)
