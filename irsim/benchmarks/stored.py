@@ -288,6 +288,7 @@ def result_of_plan(plan: Plan, result: BenchmarkResult) -> BenchmarkResult:
         "about": plan.suite.about,
         "sources": list(plan.suite.sources),
         "steps": plan.suite.steps,
+        "seconds": plan.suite.seconds,
         "until": plan.suite.until,
         "suite_hash": plan.suite_hash,
         "hash": plan.hash,

@@ -37,6 +37,7 @@ from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
 from irsim.diagnostics.diagnostic import Path as Path_
 from irsim.diagnostics.errors import CodedError
 from irsim.options.units import MAX_WHOLE, Value
+from irsim.options.units import Seconds as Seconds_
 from irsim.results.run import EpisodeUntil
 from irsim.scenario.file_kind import MOST_PROBLEMS, FileKind, explained
 from irsim.scenario.limits import MAX_STEPS
@@ -86,15 +87,16 @@ class SuiteScenario(_Part):
     mapping is a scenario, so that values change together."""
     steps: Annotated[int, Field(ge=1, le=MAX_STEPS)] | None = None
     """Horizon of these scenarios in steps; null takes the suite's."""
+    overrides: dict[str, Any] = {}
+    """Path of a key → value in each of them, as ``overrides`` of the suite."""
     tags: list[Name] = []
     """Groups to which these scenarios belong, such as ``doorway``: the scenarios of each tag are summarised in a row
     of their own."""
 
     @model_serializer(mode="wrap")
-    def _without_empty_tags(self, serialize: Callable[[SuiteScenario], dict[str, Any]]) -> dict[str, Any]:
-        """The fields; without tags as before there were any, so that hashes of suites stay."""
-        fields = serialize(self)
-        return {key: value for key, value in fields.items() if key != "tags" or value}
+    def _as_before(self, serialize: Callable[[SuiteScenario], dict[str, Any]]) -> dict[str, Any]:
+        """The fields; without those that older suites do not have, so that their hashes stay."""
+        return {key: value for key, value in serialize(self).items() if value or key not in ("overrides", "tags")}
 
     def variants(self) -> Iterator[dict[str, Any]]:
         """The values of each scenario of the family, by key, in order."""
@@ -152,8 +154,13 @@ class Suite(_Part):
     """The scenarios."""
     seeds: Seeds = Seeds()
     """Seeds of the episodes."""
-    steps: Annotated[int, Field(ge=1, le=MAX_STEPS)]
+    steps: Annotated[int, Field(ge=1, le=MAX_STEPS)] | None = None
     """Horizon in steps; in seconds it is this number times the ``step_time`` of the scenario, 0.1 s by default."""
+    seconds: Annotated[Seconds_, Field(gt=0)] | None = None
+    """Horizon in seconds, instead of ``steps``, for scenarios with several ``step_time``."""
+    overrides: dict[str, Any] = {}
+    """Path of a key → value in every scenario: ``{"world.contacts": swept, "robot[*].acce": [1, 4]}``, where ``[*]`` is
+    each entry. The last key may be new."""
     protocols: Annotated[list[Protocol], Field(min_length=1)] = ["as-written"]
     """Robots that have arrived stand still (``freeze``), stay controlled so that they can make room (``yield``), or do
     what the scenario says (``as-written``). Each protocol is run on its own."""
@@ -178,8 +185,15 @@ class Suite(_Part):
         """All policies that the suite has a name for, whether it runs them by itself or not."""
         return self.policies | self.others
 
+    @model_serializer(mode="wrap")
+    def _as_before(self, serialize: Callable[[Suite], dict[str, Any]]) -> dict[str, Any]:
+        """The fields; without those that older suites do not have, so that their hashes stay."""
+        return {key: value for key, value in serialize(self).items() if value or key not in ("overrides", "seconds")}
+
     @model_validator(mode="after")
     def _is_consistent(self) -> Suite:
+        if (self.steps is None) == (self.seconds is None):
+            raise ValueError("give either steps or seconds")
         names = [scenario.name for scenario in self.scenarios]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:

@@ -42,12 +42,12 @@ def expand(suite: Suite, file: Path) -> list[Expanded]:
     made: list[Expanded] = []
     for scenario in suite.scenarios:
         for values in scenario.variants():
-            data = _data(scenario, values, file)
+            data = _data(scenario, values, file, {**suite.overrides, **scenario.overrides})
             name = "-".join([scenario.name, *(label_of(value) for value in values.values())])
             for protocol in suite.protocols:
                 changed = _under(protocol, data)
                 full = name if len(suite.protocols) == 1 else f"{name}/{protocol}"
-                steps = scenario.steps or suite.steps
+                steps = scenario.steps or suite.steps or round(suite.seconds / _step_time(data))  # type: ignore[operator]
                 made.append(Expanded(full, scenario.name, protocol, values, steps, changed, file.parent))
             if len(made) > MAX_SCENARIOS * len(suite.protocols):
                 raise SuiteError(f"the suite has more than {MAX_SCENARIOS} scenarios", "vary fewer values")
@@ -59,20 +59,26 @@ def expand(suite: Suite, file: Path) -> list[Expanded]:
     return sorted(made, key=lambda one: suite.protocols.index(one.protocol))
 
 
-def _data(scenario: SuiteScenario, values: Mapping[str, Any], file: Path) -> dict[str, Any]:
-    """A scenario as data.
+def _step_time(data: Mapping[str, Any]) -> float:
+    return float((data.get("world") or {}).get("step_time") or 0.1)
+
+
+def _data(scenario: SuiteScenario, values: Mapping[str, Any], file: Path, always: Mapping[str, Any]) -> dict[str, Any]:
+    """A scenario as data, with values of its own and those of all scenarios of the suite.
 
     Raises:
         SuiteError: It cannot be made.
     """
     folder = file.parent
+    data: Any
     if scenario.template is not None:
+        known = {key: value for key, value in values.items() if len(parse_path(key)) == 1}
         try:
-            text = fill(load(scenario.template), {**scenario.parameters, **values})
+            text = fill(load(scenario.template), {**scenario.parameters, **known})
         except TemplateError as error:
             raise SuiteError(f"scenario {scenario.name!r}: {error.message}", error.fix or "") from None
-        return dict(read_plain_yaml(text))
-    if scenario.file is not None:
+        data, values = dict(read_plain_yaml(text)), {key: values[key] for key in values.keys() - known.keys()}
+    elif scenario.file is not None:
         document = load_path(folder / scenario.file)
         problems = [item for item in document.problems if item.severity == "error"]
         if document.fatal or not isinstance(document.data, Mapping):
@@ -81,10 +87,10 @@ def _data(scenario: SuiteScenario, values: Mapping[str, Any], file: Path) -> dic
             )
         if problems:
             raise suite_error(file, [replace(item, file=str(folder / scenario.file)) for item in problems])
-        data: Any = dict(document.data)
+        data = dict(document.data)
     else:
         data = deepcopy(scenario.scenario)
-    for path, value in values.items():
+    for path, value in {**always, **values}.items():
         _set(data, path, value, scenario.name)
     return dict(data)
 
@@ -97,14 +103,24 @@ def _set(data: Any, path: str, value: Any, name: str) -> None:
     """
     *way, last = parse_path(path)
     try:
-        for part in way:
-            data = data[part]
-        data[last] = value
+        for place in _places(data, way):
+            place[last] = value
     except (LookupError, TypeError):
         raise SuiteError(
             f"scenario {name!r} has nothing at {path!r}",
             "write a path such as robot[0].number, with keys that exist",
         ) from None
+
+
+def _places(data: Any, way: Sequence[str | int]) -> list[Any]:
+    """The values at a path, of which the part ``*`` is each entry of a list, or a single entry without a list."""
+    places = [data]
+    for part in way:
+        if part == "*":
+            places = [one for place in places for one in (place if isinstance(place, list) else [place])]
+        else:
+            places = [place[part] for place in places]
+    return places
 
 
 def _under(protocol: Protocol, data: Mapping[str, Any]) -> dict[str, Any]:

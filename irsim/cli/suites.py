@@ -24,7 +24,7 @@ def suites(json_output: Json = False) -> None:
                 "suite": suite.suite, "version": suite.version, "title": suite.title, "about": suite.about,
                 "scenarios": [one.name for one in plan.scenarios], "policies": plan.policies,
                 "others": suite.others,
-                "protocols": suite.protocols, "seeds": len(plan.seeds), "steps": suite.steps,
+                "protocols": suite.protocols, "seeds": len(plan.seeds), "steps": suite.steps, "seconds": suite.seconds,
             }
             for suite, plan in plans.values()
         ]  # fmt: skip

@@ -205,6 +205,10 @@ def suite_key_answer(words: Sequence[str]) -> Answer | None:
     return None
 
 
+def _horizon(suite: Suite) -> str:
+    return f"at most {suite.steps} steps" if suite.seconds is None else f"at most {suite.seconds:g} s"
+
+
 def suite_answer(name: str) -> Answer:
     """Describe a bundled suite."""
     suite, plan = load_suite(name)[0], suite_plan(name)
@@ -213,7 +217,7 @@ def suite_answer(name: str) -> Answer:
         topic=name,
         kind="suite",
         title=f"suite {name}: {suite.title}",
-        text=f"{suite.about} Seeds {plan.seeds[0]} to {plan.seeds[-1]}{full}, at most {suite.steps} steps; protocols: "
+        text=f"{suite.about} Seeds {plan.seeds[0]} to {plan.seeds[-1]}{full}, {_horizon(suite)}; protocols: "
         f"{', '.join(suite.protocols)}. One scenario is named {name}/{plan.scenarios[0].name}, for irsim run and for "
         "the tools.",
         groups={

@@ -252,7 +252,9 @@ class SuiteResult(BenchmarkResult):
     sources: list[str] = Field(default_factory=list)
     """Papers and pages that the suite follows."""
     steps: int | None = None
-    """Horizon in steps; scenarios may have their own."""
+    """Horizon in steps; scenarios may have their own. None where it is in seconds."""
+    seconds: float | None = None
+    """Horizon in seconds."""
     until: Literal["done", "first_collision"] | None = None
     """When an episode ends before its horizon: when every robot has arrived or stopped (``done``), or already when one
     collides."""

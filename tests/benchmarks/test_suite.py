@@ -20,7 +20,6 @@ from irsim.env import Env
 from irsim.lookup import lookup
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import load_text
-from irsim.validation.file_reports import suite_report
 
 MINIMAL: dict[str, Any] = {
     "suite": "mine", "version": 1, "title": "Mine", "steps": 50, "policies": {"dash": "dash"},
@@ -367,31 +366,3 @@ def test_a_scenario_in_which_nothing_can_be_perturbed_is_named(tmp_path: Path) -
     arguments = ["benchmark", str(tmp_path / "field.yaml"), "--seeds", "1", "-o", str(tmp_path / "out")]
     done = CliRunner().invoke(app, arguments)
     assert (done.exit_code, "nothing to perturb in 'field-2'" in done.output) == (2, True)
-
-
-SWAP = {
-    "world": {"width": 10, "height": 10},
-    "robot": [
-        {"number": 2, "kinematics": {"name": "omni"}, "state": [[1, 5, 0], [9, 5, 0]], "goal": [[9, 5], [1, 5]]},
-    ],
-}  # fmt: skip
-
-
-def test_validate_checks_the_scenarios_of_a_suite_under_its_policies(tmp_path: Path) -> None:
-    policies = {"plain": {"name": "orca", "sidestep": 0}, "usual": "orca"}
-    file = written(tmp_path, scenarios=[{"name": "swap", "scenario": SWAP}], policies=policies)
-    report = suite_report(str(file))
-    assert (report.valid, report.warnings, report.summary.rpartition("; ")[2]) == (True, 1, "1 warning")
-    [found] = report.findings
-    assert (found.code, found.path) == ("exact-symmetry", "scenarios[0].scenario.robot[0].behavior")
-    assert found.line is not None
-    assert "scenario 'swap' under the policy 'plain'" in found.message
-    written(tmp_path, scenarios=[{"name": "swap", "scenario": SWAP}], policies=policies, perturb=[{"position": 0.1}])
-    assert suite_report(str(file)).findings == []  # no seed has the exact symmetry
-
-
-def test_warnings_of_a_bundled_suite_show_its_lines() -> None:
-    result = CliRunner().invoke(app, ["validate", "crowdnav_circle_v1"])
-    assert result.exit_code == 0
-    assert "crowdnav_circle_v1:33:25" in result.output
-    assert "scenario 'circle-invisible'" in result.output
