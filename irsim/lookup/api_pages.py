@@ -20,6 +20,7 @@ from irsim.env import Env
 from irsim.env.batch import Batch
 from irsim.lookup.answer import plain_table
 from irsim.lookup.pages import components
+from irsim.lookup.protocols import protocol_pages
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.objects.behavior import ObjectBehavior
 from irsim.objects.body import Body
@@ -103,7 +104,8 @@ def comparisons() -> Pages:
     def table(metrics: list[Any]) -> str:
         return plain_table(heads, [(f"`{m.key}`", m.unit, m.text, m.robots, m.better or "") for m in metrics])
 
-    return {
+    protocols = {f"protocol_{name}": make_page(f"Protocol of {name}", text) for name, text in protocol_pages().items()}
+    return protocols | {
         "metrics": make_page(
             "Metrics",
             "Each robot has a value. The column `over robots` says how the values of the robots are combined to the "
