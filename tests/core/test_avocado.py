@@ -101,6 +101,36 @@ def leaving(offset: np.ndarray, velocity: np.ndarray, radius: float, tau: float)
     return leg * (leg @ velocity) - velocity
 
 
+@pytest.mark.parametrize(("evidence", "first"), [("neutral", 0.0), ("authors", math.tanh(-0.5 * 2.5))])
+def test_evidence_at_first_sight(evidence: str, first: float) -> None:
+    """Where nothing was needed before, the released program reads that the other did not give way."""
+    a, c, d, dt = 0.4, 0.9, 1.5, 0.1
+    behavior = kernel(
+        "avocado", own_weight=a, evidence_weight=c, forgetting=d, evidence_gain=2.5, attention_step=1.0,
+        evidence=evidence,
+    )  # fmt: skip
+    world, state = watching(behavior, dt=dt)
+    opinion, attention = decide_with(world, state, 1.0, (-0.5, 0.0))
+    assert opinion == pytest.approx(dt * d * attention * math.tanh(c * first), abs=1e-12)
+
+
+@pytest.mark.parametrize("memory", [False, True])
+def test_opinions_of_those_who_leave_are_kept_with_memory_only(memory: bool) -> None:
+    behavior = kernel("avocado", neighborDist=3.0, attention_step=1.0, bias=0.0, memory=memory, forgetting=2.0)
+    world, state = watching(behavior)
+    for _ in range(20):  # it comes nearer and does not give way
+        before = decide_with(world, state, 2.0, (-0.5, 0.0))
+    assert before[0] < -0.3
+    state.pose[1, :2] = (30.0, 0.0)
+    for _ in range(5):
+        core.decide(world, state)
+        state.count[0] += 1
+    assert [one[1:] for one in state.opinions(0)] == ([before] if memory else [])
+    after, _ = decide_with(world, state, 2.0, (-0.5, 0.0))
+    assert after == pytest.approx(before[0] * (1 - 0.2) if memory else 0.0, abs=0.15)
+    assert (after < -0.3) == memory
+
+
 @pytest.mark.parametrize(("reaction", "evidence"), [(0.0, -0.5), (0.5, 0.0), (1.0, 0.5)])
 def test_opinions_settle_at_the_fixed_point(reaction: float, evidence: float) -> None:
     """The other robot makes none, half or all of the needed change in each step, and stays on a collision course.

@@ -25,10 +25,10 @@ double time_to_contact(const OrcaAgent& agent, const OrcaAgent& other) {
 }
 
 /// The reading of another object's last change of velocity: from -1, it did not give way, to 1, it did all that was
-/// needed to avoid a collision. 0 if nothing was needed.
-double evidence(const Opinion& before, Vec2 velocity, double gain) {
-  const double needed2 = squared(before.change);
-  if (needed2 < kMinChange * kMinChange) return 0.0;
+/// needed to avoid a collision. Nothing was needed: 0, or that of no reaction.
+double evidence(const AvocadoOptions& options, const Opinion& before, Vec2 velocity) {
+  const double needed2 = squared(before.change), gain = options.evidence_gain;
+  if (needed2 < kMinChange * kMinChange) return options.evidence == NoNeed::neutral ? 0.0 : std::tanh(-0.5 * gain);
   return std::tanh(gain * (std::fabs(dot(velocity - before.velocity, before.change)) / needed2 - 0.5));
 }
 
@@ -36,7 +36,7 @@ double evidence(const Opinion& before, Vec2 velocity, double gain) {
 void observe(const AvocadoOptions& options, const OrcaAgent& agent, const OrcaAgent& other, double dt, Opinion& of) {
   const double time = time_to_contact(agent, other);
   of.attention += options.attention_step * (std::tanh(options.attention_time / time) - of.attention);
-  const double seen = evidence(of, other.velocity, options.evidence_gain);
+  const double seen = evidence(options, of, other.velocity);
   const double pull = std::tanh(options.own_weight * of.opinion + options.evidence_weight * seen);
   const double goal = of.attention * pull + options.bias / options.forgetting;
   of.opinion += std::min(1.0, dt * options.forgetting) * (goal - of.opinion);
@@ -55,8 +55,10 @@ class LearnedShare final : public Reciprocity {
     formed_ = opinions_->step == now_;
     before_.clear();
     if (formed_) return;
-    if (opinions_->step == now_ - 1) before_.swap(opinions_->of);  // after a break all are neutral
-    opinions_->of.clear();
+    if (!options_.memory) {
+      if (opinions_->step == now_ - 1) before_.swap(opinions_->of);  // after a break all are neutral
+      opinions_->of.clear();
+    }
     opinions_->step = now_;
   }
 
@@ -66,6 +68,8 @@ class LearnedShare final : public Reciprocity {
     const int number = world.number[world.moving[m]];
     Opinion& of = remembered(number);
     if (!formed_) {
+      if (of.seen != now_ - 1) of.change = {};  // it was out of reach, so nothing was needed of it
+      of.seen = now_;
       observe(options_, agent, other, world.step_time, of);
       of.velocity = other.velocity;
     }
@@ -85,9 +89,10 @@ class LearnedShare final : public Reciprocity {
   /// The opinion of the object with this number, old or new, as an entry of the present ones.
   Opinion& remembered(int number) {
     std::vector<Opinion>& present = opinions_->of;
-    std::vector<Opinion>& known = formed_ ? present : before_;
+    const bool in_place = formed_ || options_.memory;
+    std::vector<Opinion>& known = in_place ? present : before_;
     const auto found = std::find_if(known.begin(), known.end(), [&](const Opinion& o) { return o.about == number; });
-    if (formed_ && found != known.end()) return *found;
+    if (in_place && found != known.end()) return *found;
     const Opinion neutral{number, options_.bias / options_.forgetting, 0.0, {}, {}};
     present.push_back(found != known.end() ? *found : neutral);
     return present.back();

@@ -16,6 +16,7 @@ struct Opinion {
   double attention = 0.0;  // 0 while no collision is ahead, 1 if one is near
   Vec2 velocity;           // of the other object in the last step [m/s]
   Vec2 change;             // change of the relative velocity that just avoided it then [m/s]
+  std::int64_t seen = -1;  // step in which it was last considered
 };
 
 /// The opinions of one object.
@@ -23,7 +24,7 @@ struct Opinions {
   std::int64_t step = -1;  // step in which they were formed
   // steps in which the object was last the mirror image of another one, and before that; -1: never
   std::int64_t tied = -1, tied_before = -1;
-  std::vector<Opinion> of;  // of the objects considered in that step, nearest first
+  std::vector<Opinion> of;  // of the objects considered in that step, nearest first; with memory of all before, too
 };
 
 }  // namespace irsim
