@@ -75,7 +75,7 @@ def rules_of_suite(path: Any, text: str | None = None) -> tuple[list[str], str]:
 
 
 def in_suite(path: Any, text: str | None = None) -> Path | None:
-    """What may be ``SUITE/SCENARIO``: a path that is no file; None for anything else.
+    """A path that may be ``SUITE/SCENARIO``, because it names no file; None for anything else.
 
     Args:
         path: As :func:`irsim.run` takes it.

@@ -161,7 +161,7 @@ def run(
         if recorder is not None and recorded is not None and record is not False:
             recorded(recorder.run_id)
         files, lost = list[str](), None
-        alone = connection is None and not show  # no program moves obstacles, and nobody looks at the window
+        alone = connection is None and not show  # no program moves obstacles, and there is no window
         end = until if alone or env.robot_list else "time_limit"
         try:
             if save is None and not show:

@@ -55,7 +55,7 @@ def ranks_of(rows: Sequence[BenchmarkRow], pairs: Sequence[PolicyPair]) -> list[
     """The rank of each policy in each row by the share of episodes that succeed.
 
     Its best rank is one more than the number of policies that are better for sure, its worst one the last less the
-    number of those that are worse for sure, by the intervals of the pairs (Mogstad et al. 2024, Inference for ranks).
+    number of the worse ones, by the intervals of the pairs (Mogstad et al. 2024, Inference for ranks).
 
     Args:
         rows: The rows.
@@ -86,7 +86,7 @@ def _lead(pair: PolicyPair, behavior: str) -> int | None:
 
 
 def _trials(episodes: Sequence[EpisodeRow], behaviors: Sequence[str]) -> list[list[EpisodeRow]]:
-    """The episodes of all policies with the same scenario and seed, those of one scenario together."""
+    """The episodes of all policies with the same scenario and seed, scenario by scenario."""
     by_trial: dict[tuple[str, int], dict[str, EpisodeRow]] = {}
     for one in placed(episodes):
         by_trial.setdefault((one.scenario, one.seed), {})[one.behavior] = one

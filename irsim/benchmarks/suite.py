@@ -95,7 +95,7 @@ class SuiteScenario(_Part):
 
     @model_serializer(mode="wrap")
     def _as_before(self, serialize: Callable[[SuiteScenario], dict[str, Any]]) -> dict[str, Any]:
-        """The fields; without those that older suites do not have, so that their hashes stay."""
+        """The fields, but for new ones without a value, so that the hashes of older suites stay."""
         return {key: value for key, value in serialize(self).items() if value or key not in ("overrides", "tags")}
 
     def variants(self) -> Iterator[dict[str, Any]]:
@@ -187,7 +187,7 @@ class Suite(_Part):
 
     @model_serializer(mode="wrap")
     def _as_before(self, serialize: Callable[[Suite], dict[str, Any]]) -> dict[str, Any]:
-        """The fields; without those that older suites do not have, so that their hashes stay."""
+        """The fields, but for new ones without a value, so that the hashes of older suites stay."""
         return {key: value for key, value in serialize(self).items() if value or key not in ("overrides", "seconds")}
 
     @model_validator(mode="after")

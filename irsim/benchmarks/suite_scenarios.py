@@ -64,7 +64,7 @@ def _step_time(data: Mapping[str, Any]) -> float:
 
 
 def _data(scenario: SuiteScenario, values: Mapping[str, Any], file: Path, always: Mapping[str, Any]) -> dict[str, Any]:
-    """A scenario as data, with values of its own and those of all scenarios of the suite.
+    """A scenario as data, with its own values and the values of all scenarios of the suite.
 
     Raises:
         SuiteError: It cannot be made.

@@ -64,7 +64,7 @@ def estimates(
     Args:
         columns: Name → values.
         shares: Names of columns whose values are all 0 or 1: they get the interval of a proportion.
-        scenarios: Scenario of each value, those of one together, for a summary of several scenarios: they are resampled
+        scenarios: Scenario of each value, in their order, for a summary of several scenarios: they are resampled
             with their values, and no share has a narrower interval than if its values were independent.
     """
     known = {name: [value for value in values if value is not None] for name, values in columns.items()}
@@ -92,7 +92,7 @@ def _numbers(scenarios: Sequence[str]) -> list[int]:
 
 
 def _widest(intervals: Sequence[tuple[float, float]]) -> tuple[float | None, float | None]:
-    """The smallest interval that holds all of these, of which those that are NaN are left out."""
+    """The smallest interval that holds all of these; an interval that is NaN is left out."""
     known = [ends for ends in intervals if not math.isnan(ends[0])]
     return (min(low for low, _ in known), max(high for _, high in known)) if known else (None, None)
 
@@ -123,7 +123,7 @@ def summaries_of(
 ) -> dict[str, list[EpisodeRow]]:
     """Name of each row → its episodes: of each scenario, of all scenarios, and of each group of scenarios.
 
-    Scenarios are summarised together if each has the same number of episodes. Those of different protocols never are,
+    Scenarios are summarised together if each has the same number of episodes. Different protocols never are,
     because the same start and seed would count twice.
 
     Args:
@@ -252,7 +252,8 @@ def _columns(episodes: Sequence[EpisodeRow], keys: Sequence[str] = KEYS) -> dict
     """The values of each metric.
 
     ``contacts_per_hour`` is a ratio of two means. Its values are linearised (Woodruff 1971), so that their mean is the
-    ratio, and their spread that of the ratio: R + (c - R t) / mean(t), with the contacts c and hours t of an episode.
+    ratio, and their spread the spread of the ratio: R + (c - R t) / mean(t), with the contacts c and hours t of an
+    episode.
     """
     columns = {key: [episode.metrics[key] for episode in episodes] for key in keys}
     if "contacts_per_hour" in columns:
@@ -292,7 +293,7 @@ def paired_differences(
     Args:
         pairs: Episodes with the same scenario and seed.
         keys: The metrics.
-        shares: Those of them that are 0 or 1.
+        shares: The metrics that are 0 or 1.
         together: Whether the pairs are of several scenarios, which are then resampled.
     """
     mine, other = (_columns(side, keys) for side in zip(*pairs, strict=True))

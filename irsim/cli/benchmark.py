@@ -234,7 +234,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     for name in summaries if len(behaviors) > 2 else ():
         mine = sorted((one for one in result.ranks if one.scenario == name), key=lambda one: one.rank)
         told = [f"{behaviors[one.behavior]} {one.rank:g} ({one.low} to {one.high})" for one in mine]
-        out.print(f"{name}: ranks by success, and those that the intervals allow: {', '.join(told)}")
+        out.print(f"{name}: ranks by success, and the ranks that the intervals allow: {', '.join(told)}")
     suite = hasattr(result, "facts")
     failed = [row for row in result.rows if row.failed]
     for row in failed[: MAX_FAILED_LINES if suite else None]:

@@ -93,7 +93,7 @@ def validate(
                     report, text = _check_file(file, text, fix, simulate, seed, not lenient, limits_for(max_objects))
                 else:
                     report = suite_report(file) if kinds[file] == "a suite" else task_report(file)
-                    if file in SUITES.names():  # it is no path
+                    if file in SUITES.names():  # a name, not a path
                         text = SUITES.bundled(file).read_text(encoding="utf-8")
             except ScenarioNotFoundError as error:  # continue with the other files
                 report, text = not_found(file, str(error)), ""

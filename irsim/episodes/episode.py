@@ -74,7 +74,7 @@ def _most_steps(objects: int, limits: Limits) -> tuple[int | None, str]:
 def advance(
     env: Env, steps: int, progress: Progress | None, *, until: Until = "done", recorder: EpisodeRecorder | None = None
 ) -> None:
-    """Advance an environment, by default until every robot has arrived or stopped, or all that moves if there are none.
+    """Advance an environment, by default until every robot has arrived or stopped, or, without robots, all that moves.
 
     Args:
         env: The environment.

@@ -162,7 +162,7 @@ def as_brief_text(answer: Answer) -> str:
 
 
 def title_of(answer: Answer) -> str:
-    """The title of an answer; that of a misspelt question says how it was read."""
+    """The title of an answer; for a misspelt question it says how it was read."""
     return answer.title if answer.read_as is None else f"No such topic; nearest: {answer.read_as!r}. {answer.title}"
 
 

@@ -25,7 +25,7 @@ _ENDS = {
 _OUTCOMES = (
     "Success: every robot reached its goal before the horizon, and touched nothing before. Collision: a robot was "
     "stopped by a contact, or arrived after one. Time-out: neither. A seed without room for an object is "
-    "`placement-crowded` and counts in no rate. Metrics are those of [metrics](metrics.md); the deciding one is "
+    "`placement-crowded` and counts in no rate. [Metrics](metrics.md) are defined elsewhere; the deciding one is "
     "`success`."
 )
 _STATISTICS = f"{INTERVALS} Differences are of the same scenario and seed; ranks and all pairs: [result](result.md)."
@@ -92,7 +92,7 @@ def _policies(policies: Mapping[str, object]) -> Iterator[tuple[str, str, str]]:
 
 
 def _threats(suite: Suite, scenes: Mapping[str, ResolvedScenario]) -> Iterator[str]:
-    """What the numbers take for granted, and what they cannot show."""
+    """Assumptions behind the numbers, and their limits."""
     for sentence in assumptions_of(scenes):
         yield f"{sentence[:1].upper()}{sentence[1:]}."
     if len({scene.world.step_time for scene in scenes.values()}) == 1 and "step" not in scenes:

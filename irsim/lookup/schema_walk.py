@@ -118,10 +118,10 @@ def unknown_key(root: Node, path: str) -> tuple[str, str, list[str]] | None:
         kinds = {option.get("type", "object") for node in nodes for option in alternatives(root, node)}
         if not options and "object" in kinds:
             return None
-        found = [option["properties"][word] for option in options if word in option["properties"]]
-        if not found:
+        inner = [option["properties"][word] for option in options if word in option["properties"]]
+        if not inner:
             return place, word, sorted({key for option in options for key in option["properties"]})
-        nodes, place = found, f"{place}.{word}".lstrip(".")
+        nodes, place = inner, f"{place}.{word}".lstrip(".")
     return None
 
 

@@ -192,7 +192,7 @@ def near_topics(topics: set[str], words: list[str]) -> list[str]:
 
 
 def nearest_name(schema: Node, word: str) -> str | None:
-    """Return the name or everyday word that a misspelt word is clearly nearest to; None if there is none."""
+    """Return the name or everyday word that a misspelt word is clearly nearest to; None without such a name."""
     words = {word for guide in ALL_GUIDES.values() for word in guide.words}
     words |= {name for names in EVERYDAY.values() for name in names.split(", ")}
     names = {name for name in words if name.isalpha()} | {re.split(r"[. ]", name)[-1] for name in all_topics(schema)}

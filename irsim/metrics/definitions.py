@@ -183,7 +183,7 @@ EPISODE_METRICS: tuple[Metric, ...] = (
     Metric(
         "restricted_time",
         "s",
-        "mean over all robots of the time of arrival, the horizon for those that did not arrive (restricted mean)",
+        "mean over all robots of the time of arrival, or of the horizon without arrival (restricted mean)",
         canonical=False,
         better="less",
     ),

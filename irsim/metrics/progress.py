@@ -123,7 +123,7 @@ def outcome_metrics(track: Track) -> dict[str, float]:
       (``world.collision_mode``) counts as a contact, not as the end.
     - ``time_to_goal`` [s]: time of the first arrival; NaN without one. ``driving_time`` [s]: time from when it came
       into the world until it arrived, or to the end.
-    - ``arrived_share``: the same as ``goal_reached``; the mean over robots is the share of those that arrived.
+    - ``arrived_share``: the same as ``goal_reached``; its mean over robots is the share that arrived.
     """
     kinds = [kind for _, kind in track.collisions]
     agents, humans = kinds.count(ROBOT), kinds.count(HUMAN)

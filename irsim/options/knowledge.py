@@ -1,4 +1,4 @@
-"""What a behavior or policy knows of the world besides the state, the limits and the goal of its own robot."""
+"""The information of a behavior or policy besides the state, the limits and the goal of its own robot."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Fact = Literal["circles", "outlines", "headings", "arrivals", "laws", "static", 
 """
 FACTS: tuple[Fact, ...] = get_args(Fact)
 _WORDS: dict[Fact, str] = {
-    "circles": "circles of others", "outlines": "outlines of others", "headings": "headings",
+    "circles": "circles of other objects", "outlines": "outlines of other objects", "headings": "headings",
     "arrivals": "who has arrived",
     "laws": "who gives way by the same law", "static": "walls", "map": "the whole map", "scan": "a lidar",
 }  # fmt: skip
@@ -37,7 +37,7 @@ def knowledge_class(known: Collection[Fact], neighbors: int = 0, reach: float = 
 
     Args:
         known: The facts that it knows.
-        neighbors: Number of others that it sees; 0 for no limit.
+        neighbors: Number of objects that it sees; 0 for no limit.
         reach: Distance within which it sees them [m].
     """
     parts = [name for fact, name in (("scan", "lidar"), ("map", "map")) if fact in known]
@@ -52,4 +52,4 @@ def knowledge_class(known: Collection[Fact], neighbors: int = 0, reach: float = 
 
 def knowledge_text(known: Collection[Fact]) -> str:
     """The facts in words, in a fixed order."""
-    return ", ".join(_WORDS[fact] for fact in FACTS if fact in known) or "nothing of others"
+    return ", ".join(_WORDS[fact] for fact in FACTS if fact in known) or "nothing but itself"

@@ -44,7 +44,7 @@ class BehaviorPolicy(Policy):
         self.name = AS_WRITTEN if self.options is None else str(self.options["name"])
 
     def known(self) -> frozenset[Fact] | None:
-        """What the behavior knows with its options; None for ``as-written`` and behaviors of Python."""
+        """The information of the behavior with its options; None for ``as-written`` and behaviors of Python."""
         feature = None if self.options is None else BEHAVIORS.get(self.name)
         if feature is None or self.options is None:
             return None

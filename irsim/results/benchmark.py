@@ -181,9 +181,10 @@ class BenchmarkResult(Result):
     behaviors: list[str]
     """The policies; differences are to the first."""
     information: dict[str, str] = Field(default_factory=dict)
-    """What each policy knows besides its own state and goal, as a class: ``outlines``, ``circles``, ``neighbors(k, r)``
-    (the k nearest circles within r), ``lidar``, ``map`` or ``blind``, with ``+intent`` for who has arrived or gives way
-    by the same law. Only policies of one class compete with equal means; those that cannot tell are left out."""
+    """The information of each policy besides its own state and goal, as a class: ``outlines``, ``circles``,
+    ``neighbors(k, r)`` (the k nearest circles within r), ``lidar``, ``map`` or ``blind``, with ``+intent`` for who has
+    arrived or gives way by the same law. Only policies of one class compete with equal means; policies of which it is
+    not known are left out."""
     digests: dict[str, str] = Field(default_factory=dict)
     """SHA-256 of the file of each policy that is one."""
     seeds: list[int]

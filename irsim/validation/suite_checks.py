@@ -17,7 +17,7 @@ from irsim.validation.feasibility.check import feasibility_findings
 __all__ = ["suite_warnings"]
 
 _BROKEN_BY_NOISE = frozenset({"exact-symmetry"})
-"""Codes of what is no problem where each seed moves the starts a little."""
+"""Codes of warnings that do not matter where each seed moves the starts a little."""
 
 
 _OF_BEHAVIORS = frozenset({"exact-symmetry", "no-behavior"})
@@ -34,7 +34,7 @@ def suite_warnings(suite: Suite, file: Path) -> list[Diagnostic]:
         suite: The suite.
         file: Where it was read from.
     """
-    found: dict[tuple[Any, ...], Diagnostic] = {}
+    warnings: dict[tuple[Any, ...], Diagnostic] = {}
     moved = any(one.position or one.heading for one in suite.perturb)
     for one in expand(suite, file):
         if one.protocol != suite.protocols[0]:
@@ -50,8 +50,8 @@ def suite_warnings(suite: Suite, file: Path) -> list[Diagnostic]:
             if not (moved and item.code in _BROKEN_BY_NOISE):
                 shown = of_suite(item, one, suite)
                 shown = replace(shown, message=shown.message.replace(":", f"{under}:", 1))
-                found.setdefault((one.family, item.code, item.path), shown)
-    return placed(list(found.values()), suite, file)
+                warnings.setdefault((one.family, item.code, item.path), shown)
+    return placed(list(warnings.values()), suite, file)
 
 
 def _warnings(items: Sequence[Diagnostic]) -> list[Diagnostic]:

@@ -126,7 +126,7 @@ def test_a_run_of_nobody_ends_when_all_that_moves_has_arrived() -> None:
     assert "no robots; " in crossing.summary
     on = irsim.run(text="world: {width: 5, time_limit: 9}\n" + CROSSER, until="time_limit")
     assert on.sim_time == pytest.approx(9)
-    assert irsim.run(text="world: {width: 5, time_limit: 0.3}\n", show=True).steps == 3  # somebody looks at it
+    assert irsim.run(text="world: {width: 5, time_limit: 0.3}\n", show=True).steps == 3  # its window is open
     loop = CROSSER.replace("name: dash", "name: dash, loop: true")
     assert irsim.run(text="world: {width: 5, time_limit: 9}\n" + loop).sim_time == pytest.approx(9)
 

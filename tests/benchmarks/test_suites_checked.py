@@ -27,10 +27,10 @@ def test_validate_checks_the_scenarios_of_a_suite_under_its_policies(tmp_path: P
     file = written(tmp_path, scenarios=[{"name": "swap", "scenario": SWAP}], policies=policies)
     report = suite_report(str(file))
     assert (report.valid, report.warnings, report.summary.rpartition("; ")[2]) == (True, 1, "1 warning")
-    [found] = report.findings
-    assert (found.code, found.path) == ("exact-symmetry", "scenarios[0].scenario.robot[0].behavior")
-    assert found.line is not None
-    assert "scenario 'swap' under the policy 'plain'" in found.message
+    [finding] = report.findings
+    assert (finding.code, finding.path) == ("exact-symmetry", "scenarios[0].scenario.robot[0].behavior")
+    assert finding.line is not None
+    assert "scenario 'swap' under the policy 'plain'" in finding.message
     written(tmp_path, scenarios=[{"name": "swap", "scenario": SWAP}], policies=policies, perturb=[{"position": 0.1}])
     assert suite_report(str(file)).findings == []  # no seed has the exact symmetry
 

@@ -64,7 +64,7 @@ def test_a_steering_angle_is_what_limits_and_drive_leave(car: str, left: float |
         ("kinematics: {name: diff}, plot: {show_fov: true}", "show_fov", False),
         ("kinematics: {name: diff}, fov: 2, fov_radius: 3", "fov", 2.0),
         ("kinematics: {name: diff}, fov: 2, sensors: [{name: lidar2d, range_max: 4}]", "fov_radius", 4.0),
-        ("kinematics: {name: diff}, sensors: [{name: lidar2d}]", "fov", None),  # a lidar alone sees nobody
+        ("kinematics: {name: diff}, sensors: [{name: lidar2d}]", "fov", None),  # a lidar alone is not a field of view
         ("kinematics: {name: diff}, sensors: [{name: lidar2d}]", "fov_radius", None),
     ],
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""What policies and behaviors say that they know: changes of everything else leave their decision the same to the bit.
+"""The information that policies and behaviors declare: changes of everything else leave decisions the same.
 
 Each pair of worlds differs in one kind of facts about the rest of the world, and in nothing else. A policy drives the
 same robot in each. Where it does not declare these facts, its decisions are equal; where it does, some pair tells.

@@ -90,7 +90,7 @@ def _problem(path: Path, expression: str, values: Mapping[str, Any], error: Exce
     why = str(error).splitlines()[0].removeprefix("a template ") if str(error) else type(error).__name__
     return Diagnostic(
         "invalid-value", "error", path, f"it cannot be computed: {why}", given=expression,
-        allowed=f"the names {', '.join(map(str, values))}" if values else "names under `parameters`, and there is none",
+        allowed=f"the names {', '.join(map(str, values))}" if values else "names under `parameters`",
     )  # fmt: skip
 
 

@@ -161,7 +161,7 @@ class Pin(Record):
     """Selection of the bodies; ``world`` for the world itself, ``reply`` and ``text`` for the words of the answer."""
     facts: Annotated[list[Fact], Listed()]
     """Facts, such as ``size``, ``pose``, ``limits`` and ``sensors``, which stand for several, ``way`` (from start to
-    goal) and ``cover`` (of what is fixed: it may grow, not shrink or move); those of each ``of`` are in the guide."""
+    goal) and ``cover`` (of what is fixed: it may grow, not shrink or move). The guide has the facts of each ``of``."""
     why: str = ""
     """Reason, where it is not plain from the prompt."""
 

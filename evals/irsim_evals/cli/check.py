@@ -81,7 +81,7 @@ def _paths(wanted: Sequence[str] | None, store: Store) -> Iterator[Path]:
 
 
 def _beside(path: Path, store: Store) -> Store:
-    """Where the golds of a file lie: for files of the store as it says, for others in the nearest folder of golds."""
+    """Where the golds of a file lie: for files of the store as it says, else in the nearest folder of golds."""
     if path.resolve().is_relative_to(store.cases.resolve()):
         return store
     places = [parent / store.golds.name for parent in path.resolve().parents[:3]]  # a set lies in the folder of cases

@@ -135,7 +135,7 @@ def _is_convex(_: GradedScene, body: GradedBody) -> bool:
 
 
 def _view(name: str) -> _Value:
-    """A measure of its field of view; None where only a lidar has one, which sees nobody for the events of a run."""
+    """A measure of its field of view; None where only a lidar has one, which makes no events of a run."""
     return lambda _, body: getattr(body.record, name) if body.record.watches else None
 
 

@@ -122,7 +122,7 @@ def _facts_of_world(scene: GradedScene) -> dict[str, Any]:
 
 
 def _facts_of_body(body: GradedBody) -> dict[str, Any]:
-    """Kind of fact → what it is for a body, without those that follow from the whole world."""
+    """Kind of fact → what it is for a body, without facts that follow from the whole world."""
     record, sensors = body.record, body.sensors
     return {
         **{kind: getattr(body, kind) for kind in ("role", "kinematics", "options", "color", "name", "passable")},

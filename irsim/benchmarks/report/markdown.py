@@ -51,7 +51,7 @@ INTERVALS = (
 """Notes that a reader needs to judge the numbers."""
 POLICIES = "Policies by what they know besides their own state and goal"
 """The heading of the policies."""
-RANKS = "Ranks by success, with those that the intervals of all pairs allow"
+RANKS = "Ranks by success, and the ranks that the intervals of all pairs allow"
 """The heading of the ranks."""
 Table = tuple[list[str], list[list[str]]]
 """Headings and rows of cells."""
@@ -181,7 +181,7 @@ def differences_of(result: BenchmarkResult) -> Table | None:
 
 
 def classes_of(result: BenchmarkResult) -> dict[str, list[str]]:
-    """What policies know, as a class, -> the policies; "" for those of which it cannot be told."""
+    """Class of information -> its policies; "" for policies of which it cannot be told."""
     classes: dict[str, list[str]] = {}
     for behavior in result.behaviors:
         classes.setdefault(result.information.get(behavior, ""), []).append(behavior)

@@ -81,7 +81,7 @@ class Follow(BehaviorOptions):
     give way. One that starts in a zone or is pushed into it leaves it."""
 
     def known(self) -> frozenset[Fact]:
-        """The map, who has parked, and what its local behavior knows; with one that avoids also outlines of others."""
+        """The map, who has parked, and what its local behavior knows; with one that avoids, outlines, too."""
         if not isinstance(self.local, BehaviorOptions) or not self.local.avoids:
             return self.knows
         return self.knows | self.local.known() | {"circles", "outlines"}

@@ -25,7 +25,7 @@ double time_to_contact(const OrcaAgent& agent, const OrcaAgent& other) {
 }
 
 /// The reading of another object's last change of velocity: from -1, it did not give way, to 1, it did all that was
-/// needed to avoid a collision. Nothing was needed: 0, or that of no reaction.
+/// needed to avoid a collision. Nothing was needed: 0, or as without a reaction.
 double evidence(const AvocadoOptions& options, const Opinion& before, Vec2 velocity) {
   const double needed2 = squared(before.change), gain = options.evidence_gain;
   if (needed2 < kMinChange * kMinChange) return options.evidence == NoNeed::neutral ? 0.0 : std::tanh(-0.5 * gain);

@@ -11,7 +11,7 @@
 
 namespace irsim {
 
-/// What is read from an object of which nothing was needed in the last step, as at first sight: nothing, or that it did
+/// The reading of an object of which nothing was needed in the last step, as at first sight: nothing, or that it did
 /// not give way.
 enum class NoNeed { neutral, authors };
 

@@ -56,7 +56,7 @@ class NetworkPolicy(Policy):
         self._facts = dict(facts)
 
     def known(self) -> frozenset[Fact]:
-        """What its parts observe."""
+        """The facts that its parts observe."""
         return frozenset[Fact]().union(*(part.known() for part in self.head.layout.parts))
 
     def act(self, observations: Observations) -> Floats:

@@ -91,7 +91,7 @@ class OfBodies(Predicate):
         """The bodies of the selection.
 
         Raises:
-            LookupError: There are none.
+            LookupError: The selection is empty.
         """
         if not (bodies := material.bodies(scene, self.of)):
             raise LookupError(f"{self.of}: no body")
@@ -145,7 +145,7 @@ def travellers(predicate: OfBodies, material: Material, scene: GradedScene) -> l
     """The bodies of the selection of a predicate.
 
     Raises:
-        LookupError: There are none, or one of them has no goal.
+        LookupError: The selection is empty, or one of them has no goal.
     """
     bodies = predicate.bodies(material, scene)
     for body in bodies:

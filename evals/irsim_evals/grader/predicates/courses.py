@@ -172,7 +172,7 @@ class Crosses(OfBodies, EpisodePredicate):
     """Of that line only what lies between the body and its goal at the time counts."""
     driving: bool = False
     """Only crossings count after that body has left its start."""
-    direction: Literal["right_to_left", "left_to_right"] | None = None
+    direction: Literal["left_to_right", "right_to_left"] | None = None
     """Only those count that cross so, seen from the first end toward the second, or by the body."""
     number: Match | None = None
     """Accepted numbers of bodies that cross."""

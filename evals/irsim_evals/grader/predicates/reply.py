@@ -202,9 +202,9 @@ class States(AnswerPredicate):
     factors: list[Quantity] = [1.0]
     """The stated number may be the value of the property times one of these: 2 allows a diameter for a radius."""
     measure: Literal["arrival", "separation", "path", "arrived", "collided"] | None = None
-    """What is measured instead: when each body arrives [s]; the smallest distance to those of `to`, edge to edge [m];
-    how far each one goes [m]; how many arrive or collide, in all episodes together. A sentence with the words of
-    `about` and numbers of its unit, none of which is right, fails."""
+    """The measure that is taken instead: when each body arrives [s]; the smallest distance to the bodies of `to`, edge
+    to edge [m]; how far each one goes [m]; how many arrive or collide, in all episodes together. A sentence with the
+    words of `about` and numbers of its unit, all of them wrong, fails."""
     to: Selection | None = None
     """Name of the other selection, for ``separation``."""
     seconds: Quantity = 60.0
@@ -270,12 +270,12 @@ class States(AnswerPredicate):
 
 def numbers_in(text: str) -> list[tuple[float, str, float]]:
     """The numbers in a text in SI units, their units as written, and half of their last digits."""
-    found = []
+    numbers = []
     for number, word in _STATED.findall(text):
         unit, plain = "s" if word.startswith("s") else word, number.replace(",", ".")
         one = quantity(f"1 {unit}") if all(name in UNITS for name in unit.split("/")) else 1.0
-        found.append((float(plain) * one, unit, 0.5 * one / 10 ** len(plain.partition(".")[2])))
-    return found
+        numbers.append((float(plain) * one, unit, 0.5 * one / 10 ** len(plain.partition(".")[2])))
+    return numbers
 
 
 @register("assumptions")

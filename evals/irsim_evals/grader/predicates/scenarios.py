@@ -41,7 +41,7 @@ def _known(item: dict[str, Any], info: ValidationInfo, subjects: Collection[str]
 
 
 def _look(predicate: Any, material: Material, scene: GradedScene, episode: GradedEpisode | None = None) -> Observation:
-    """What a predicate observes of its subject."""
+    """The observation of a predicate of its subject."""
     subjects: dict[str, list[Any]] = {"scene": [scene], "episode": [episode]}
     try:
         seen: Observation = related(predicate, material, scene).observe(material, *subjects.get(predicate.subject, []))

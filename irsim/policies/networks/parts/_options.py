@@ -49,7 +49,7 @@ class PartOptions(Options):
         return Needs()
 
     def known(self) -> frozenset[Fact]:
-        """What it knows of the world besides the robot's own state and goal."""
+        """Its information besides the robot's own state and goal."""
         return frozenset()
 
     def channels(self) -> tuple[Channel, ...]:
