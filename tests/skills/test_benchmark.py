@@ -107,7 +107,7 @@ def test_options_on_the_page_about_clusters_exist() -> None:
 
 def test_the_example_of_what_to_say_is_the_one_of_the_examples() -> None:
     [told] = fences(BODY, "text")
-    assert "97 % [89, 99] against 43 % [32, 56]" in told
+    assert "97 % [88, 100] against 43 % [15, 70]" in told
     assert "[-77, -30]" in told
 
 
