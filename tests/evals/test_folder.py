@@ -148,3 +148,13 @@ def test_many_pictures_in_a_folder_do_not_hide_the_scenario(tmp_path: Path) -> N
     (tmp_path / "reply.md").write_text("Done.", encoding="utf-8")
     answer = from_folder(tmp_path)
     assert (list(answer.files), answer.reply) == (["scenario.yaml"], "Done.")
+
+
+def test_runs_that_the_tools_have_recorded_are_not_files_of_the_answer(tmp_path: Path) -> None:
+    for name in ("runs/before-1", "runs/made-up", "jobs/one"):
+        (tmp_path / ".irsim" / name).mkdir(parents=True)
+        (tmp_path / ".irsim" / name / "scenario.yaml").write_text("world: {}\n", encoding="utf-8")
+    for name in ("runs/before-1", "jobs/one"):
+        (tmp_path / ".irsim" / name / "run.json").write_text("{}", encoding="utf-8")
+    (tmp_path / "scenario.yaml").write_text("world: {}\n", encoding="utf-8")
+    assert list(from_folder(tmp_path).files) == ["scenario.yaml", ".irsim/runs/made-up/scenario.yaml"]

@@ -113,7 +113,7 @@ def from_folder(folder: Path, turns: int = 1) -> Answer:
         why = _unopened(path)
         if path.is_dir() and not why:
             others |= {} if any(path.iterdir()) else {f"{name}/": "an empty folder"}
-        elif _IGNORED.fullmatch(name):
+        elif _IGNORED.fullmatch(name) or _is_of_a_record(folder, relative):
             continue
         elif why or any(part in _CLOSED for part in relative.parts) or len(texts) + len(blobs) >= _MAX_FILES:
             others[name] = why or _described(path)
@@ -127,6 +127,12 @@ def from_folder(folder: Path, turns: int = 1) -> Answer:
             others[name] = _described(path)
     said = tuple(replies.get(number, "") for number in range(1, turns + 1))
     return Answer(folder.name, texts, said[-1], said, blobs, others)
+
+
+def _is_of_a_record(folder: Path, path: Path) -> bool:
+    """Whether a file belongs to a run or job that the tools have recorded."""
+    kept = path.parts[:2] in ((".irsim", "runs"), (".irsim", "jobs"))
+    return kept and folder.joinpath(*path.parts[:3], "run.json").is_file()
 
 
 def _is_hidden(path: Path) -> bool:
