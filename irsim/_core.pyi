@@ -50,6 +50,8 @@ class AvocadoOptions(_Options):
         own_weight: float,
         evidence_weight: float,
         evidence_gain: float,
+        evidence: str,
+        memory: bool,
         bias: float,
         attention_time: float,
         attention_step: float,
