@@ -65,9 +65,7 @@ def mcnemar(only_first: int, only_second: int) -> float:
     """
     if min(only_first, only_second) < 0:
         raise ValueError("numbers of pairs are not negative")
-    different = only_first + only_second
-    tail = sum(math.comb(different, i) for i in range(min(only_first, only_second) + 1))
-    return float(min(1.0, 2 * tail / (1 << different)))
+    return statistics.mcnemar(only_first, only_second)
 
 
 def paired_bootstrap(differences: Mapping[str, Sequence[float]], *, seed: int = 0) -> Interval:

@@ -90,6 +90,5 @@ def _trials(episodes: Sequence[EpisodeRow], behaviors: Sequence[str]) -> list[li
     by_trial: dict[tuple[str, int], dict[str, EpisodeRow]] = {}
     for one in placed(episodes):
         by_trial.setdefault((one.scenario, one.seed), {})[one.behavior] = one
-    complete = [made for made in by_trial.values() if len(made) == len(behaviors)]
-    complete.sort(key=lambda made: (next(iter(made.values())).scenario, next(iter(made.values())).seed))
+    complete = [made for _, made in sorted(by_trial.items()) if len(made) == len(behaviors)]
     return [[made[behavior] for behavior in behaviors] for made in complete]

@@ -180,6 +180,13 @@ class Suite(_Part):
     density: str | None = None
     """Key of ``vary`` that charts show from left to right, such as ``robot[0].number``."""
 
+    def horizon(self, step_time: float) -> int:
+        """The horizon in steps of this period [s]."""
+        if self.steps is not None:
+            return self.steps
+        assert self.seconds is not None  # one of both is given
+        return round(self.seconds / step_time)
+
     @property
     def known_policies(self) -> dict[str, str | dict[str, Any]]:
         """All policies that the suite has a name for, whether it runs them by itself or not."""

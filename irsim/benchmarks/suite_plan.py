@@ -11,7 +11,7 @@ import yaml
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes, short_hash
 from irsim.benchmarks.policies import files_of
 from irsim.benchmarks.suite import SUITES, Protocol, Suite, SuiteError, is_suite, load_suite
-from irsim.benchmarks.suite_scenarios import Expanded, expand
+from irsim.benchmarks.suite_scenarios import Expanded, expand, step_time_of
 from irsim.diagnostics.diagnostic import nearest, suggestion
 from irsim.results.run import EpisodeUntil
 from irsim.scenario.behavior_override import behavior_text
@@ -146,7 +146,7 @@ def _planned(made: Sequence[Expanded]) -> list[PlannedScenario]:
 def _with_limit(one: Expanded) -> str:
     """The text of a scenario with the horizon of the suite as its time limit."""
     world = dict(one.data.get("world") or {})
-    world["time_limit"] = round(one.steps * float(world.get("step_time") or 0.1), 9)
+    world["time_limit"] = round(one.steps * step_time_of(one.data), 9)
     return str(yaml.safe_dump({**one.data, "world": world}, sort_keys=False, allow_unicode=True))
 
 

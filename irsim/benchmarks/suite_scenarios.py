@@ -26,7 +26,7 @@ from irsim.scenario.messages.translate import located
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
-__all__ = ["Expanded", "expand", "of_suite", "placed", "under_each_policy"]
+__all__ = ["Expanded", "expand", "of_suite", "placed", "step_time_of", "under_each_policy"]
 
 
 def expand(suite: Suite, file: Path) -> list[Expanded]:
@@ -47,7 +47,7 @@ def expand(suite: Suite, file: Path) -> list[Expanded]:
             for protocol in suite.protocols:
                 changed = _under(protocol, data)
                 full = name if len(suite.protocols) == 1 else f"{name}/{protocol}"
-                steps = scenario.steps or suite.steps or round(suite.seconds / _step_time(data))  # type: ignore[operator]
+                steps = scenario.steps or suite.horizon(step_time_of(data))
                 made.append(Expanded(full, scenario.name, protocol, values, steps, changed, file.parent))
             if len(made) > MAX_SCENARIOS * len(suite.protocols):
                 raise SuiteError(f"the suite has more than {MAX_SCENARIOS} scenarios", "vary fewer values")
@@ -59,7 +59,8 @@ def expand(suite: Suite, file: Path) -> list[Expanded]:
     return sorted(made, key=lambda one: suite.protocols.index(one.protocol))
 
 
-def _step_time(data: Mapping[str, Any]) -> float:
+def step_time_of(data: Mapping[str, Any]) -> float:
+    """The period of a scenario, given as data [s]."""
     return float((data.get("world") or {}).get("step_time") or 0.1)
 
 
@@ -77,7 +78,7 @@ def _data(scenario: SuiteScenario, values: Mapping[str, Any], file: Path, always
             text = fill(load(scenario.template), {**scenario.parameters, **known})
         except TemplateError as error:
             raise SuiteError(f"scenario {scenario.name!r}: {error.message}", error.fix or "") from None
-        data, values = dict(read_plain_yaml(text)), {key: values[key] for key in values.keys() - known.keys()}
+        data, values = dict(read_plain_yaml(text)), {key: value for key, value in values.items() if key not in known}
     elif scenario.file is not None:
         document = load_path(folder / scenario.file)
         problems = [item for item in document.problems if item.severity == "error"]

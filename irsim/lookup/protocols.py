@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 from irsim.benchmarks.assumptions import assumptions_of
 from irsim.benchmarks.report.markdown import INTERVALS
@@ -85,9 +86,9 @@ def _rules(suite: Suite, count: int) -> Iterator[str]:
         yield f"Each seed changes the scenes: {'; '.join(perturbation_text(item) for item in suite.perturb)}."
 
 
-def _policies(policies: Mapping[str, object]) -> Iterator[tuple[str, str, str]]:
+def _policies(policies: Mapping[str, str | dict[str, Any]]) -> Iterator[tuple[str, str, str]]:
     for name, given in policies.items():
-        text = behavior_text(given)  # type: ignore[arg-type]
+        text = behavior_text(given)
         yield f"`{name}`", f"`{text}`", open_policy(text).knowledge() or "what the scenarios say"
 
 
