@@ -147,7 +147,7 @@ def test_a_run_with_nothing_in_it(workspace: Path, watched: Watched) -> None:
     run = recorded(
         "world: {width: 5, height: 5}\nobstacle: [{state: [1, 1, 0], shape: {name: circle, radius: 0.2}}]\n", steps=3
     )
-    page = watched.open(Path(irsim.replay(run).file))
+    page = watched.open(Path(irsim.replay(run).file), "document.getElementById('events').innerText !== ''")
     page.keyboard.press("r")
     page.keyboard.press("f")
     page.keyboard.press("]")
