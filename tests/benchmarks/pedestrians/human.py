@@ -1,0 +1,65 @@
+"""The part of the page on how human behaviors are: each recorded person, foretold by a behavior."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from irsim.bridges.pedestrians.comparison import Compared, compare_pedestrians
+from irsim.bridges.pedestrians.imitation import GOALS, GoalName
+
+FILES = {"ETH": "eth_obsmat.txt", "hotel": "hotel_obsmat.txt", "zara01": "trajectron_zara01.txt"}
+"""Name on the page -> file."""
+BEHAVIORS = ("dash", "orca", "{name: orca, timeHorizon: 2}", "sfm")
+
+
+def compare(data: Path, names: Sequence[str] = tuple(FILES), behaviors: Sequence[str] = BEHAVIORS) -> Compared:
+    """Behaviors beside the people of some recordings."""
+    return compare_pedestrians([data / FILES[name] for name in names], behaviors)
+
+
+def table(compared: Compared, name: str) -> list[str]:
+    """The table of one recording."""
+    stem = Path(FILES[name]).stem
+    rows = [row for row in compared.rows if row.recording == stem]
+    lines = [
+        f"**{name}**: {rows[0].likeness.cases} cases",
+        "",
+        "| behavior | goal | ADE [m] | FDE [m] | contacts | speed [m/s] | nearest [m] |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        one = row.likeness
+        lines.append(
+            f"| {_name(row.behavior)} | {row.goal or '–'} | {one.ade:.2f} | {one.fde:.2f} | {one.contacts:.1%} "
+            f"| {one.speed:.3f} | {one.nearest:.3f} |"
+        )
+    return lines
+
+
+def parts(compared: Compared) -> dict[str, str]:
+    """What this part puts into the page."""
+    ours = [_ours(compared, "constant velocity", ""), *(_ours(compared, name, GOALS[1]) for name in BEHAVIORS)]
+    return {
+        "radius": f"{compared.radius:g}",
+        "recorded": ", ".join(f"{name} {compared.contacts[Path(file).stem]:.1%}" for name, file in FILES.items()),
+        "tables": "\n\n".join("\n".join(table(compared, name)) for name in FILES),
+        "ours": "\n".join(ours),
+    }
+
+
+def _ours(compared: Compared, behavior: str, goal: GoalName | str) -> str:
+    cells = []
+    for name in ("hotel", "zara01"):
+        row = next(
+            row
+            for row in compared.rows
+            if (row.recording, row.behavior, row.goal) == (Path(FILES[name]).stem, behavior, goal)
+        )
+        cells.append(f"{row.likeness.ade:.2f} / {row.likeness.fde:.2f}")
+    how = f"{_name(behavior)}, goal {goal}" if goal else behavior
+    return f"| this page | {how} | {cells[0]} | {cells[1]} |"
+
+
+def _name(behavior: str) -> str:
+    return behavior if behavior == "constant velocity" else f"`{behavior}`"

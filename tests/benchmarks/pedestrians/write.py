@@ -1,0 +1,25 @@
+"""Writes the page on recorded pedestrians: ``python -m tests.benchmarks.pedestrians.write FOLDER``.
+
+FOLDER has ``eth_obsmat.txt``, ``hotel_obsmat.txt`` (ETH) and ``trajectron_zara01.txt`` (UCY, rows ``frame id x y``).
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from tests.benchmarks.pedestrians import human
+
+PAGE = Path(__file__).resolve().parents[3] / "skills" / "irsim-benchmark" / "results" / "pedestrians.md"
+TEXT = Path(__file__).with_name("page.md")
+
+
+def page(data: Path) -> str:
+    """The whole page."""
+    text = TEXT.read_text(encoding="utf-8")
+    return text.format(**human.parts(human.compare(data)))
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(Path(sys.argv[1])), encoding="utf-8")
+    print(f"wrote {PAGE}")
