@@ -20,7 +20,7 @@ from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.observations import Observations
 from irsim.policies.policy import FunctionPolicy, Policy
 from irsim.policies.random import RandomPolicy
-from irsim.policies.registry import POLICIES, RANDOM
+from irsim.policies.registry import POLICIES, RANDOM, RL_RVO_AUTHORS
 from irsim.policies.trained import COMMON_NAMES, trained_policies, trained_policy
 from irsim.scenario.behavior_override import AS_WRITTEN, behavior_text, parse_behavior, split_behaviors
 from irsim.scenario.locate import why_outside
@@ -112,10 +112,25 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
         return trained
     if name == RANDOM:
         return _named(_made(name, RandomPolicy, keys), text)
+    if name == RL_RVO_AUTHORS:
+        return _with_weights(text, keys, folder, root)
     maker = POLICIES.get(name) if root is None else None
     if maker is None:
         raise _unknown(name, root)
     return _named(_made(name, maker, keys), text)
+
+
+def _with_weights(text: str, keys: dict[str, Any], folder: str | Path | None, root: str | Path | None) -> Policy:
+    """The policy whose weights the user brings; a plug-in may have replaced it."""
+    maker = POLICIES.get(RL_RVO_AUTHORS)
+    assert maker is not None
+    given = keys.get("weights")
+    if isinstance(given, str):
+        keys = {**keys, "weights": str(_path_inside(given, folder, root))}
+    policy = _named(_made(RL_RVO_AUTHORS, maker, keys), text)
+    if isinstance(given, str):
+        policy.source = yaml_flow({"name": RL_RVO_AUTHORS, **keys, "weights": str(Path(keys["weights"]).resolve())})
+    return policy
 
 
 def names_trained(text: str) -> bool:
@@ -132,12 +147,12 @@ def _is_trained(name: str) -> bool:
 
 
 def is_network(text: str) -> bool:
-    """Whether the text of a policy names a file, or a trained policy that ships with irsim, which is a file, too.
+    """Whether the text of a policy names a file, or one that is read from a file: a trained one, or brought weights.
 
     Raises:
         InputError: The text is not a policy.
     """
-    return names_file(text) or names_trained(text)
+    return names_file(text) or names_trained(text) or _parsed(text)[0] == RL_RVO_AUTHORS
 
 
 def names_file(text: str) -> bool:
@@ -271,14 +286,23 @@ def _digest(path: Path) -> str:
     return digest(path.read_bytes(), *beside)
 
 
+def _path_inside(name: str, folder: str | Path | None, root: str | Path | None) -> Path:
+    """The path that a text names, from a folder, or inside of the root.
+
+    Raises:
+        PolicyError: It is outside of the root.
+    """
+    if root is not None and (why := why_outside(name, Path(root))) is not None:
+        fix = "put the file into the workspace and name it relative to that"
+        raise PolicyError("path-outside-workspace", f"{clean(name)!r} {why}", fix, where="policy")
+    return Path(root if root is not None else folder or ".", name)
+
+
 def _from_file(
     text: str, name: str, options: Mapping[str, Any], folder: str | Path | None, root: str | Path | None
 ) -> Policy:
     """A network from a file of the user."""
-    if root is not None and (why := why_outside(name, Path(root))) is not None:
-        fix = "put the file into the workspace and name it relative to that"
-        raise PolicyError("path-outside-workspace", f"{clean(name)!r} {why}", fix, where="policy")
-    path = Path(root if root is not None else folder or ".", name)
+    path = _path_inside(name, folder, root)
     if path.is_dir():
         raise UnknownPolicyError(f"{clean(name)!r} is a folder", "give the path of a file")
     if not path.is_file():

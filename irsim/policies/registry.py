@@ -8,12 +8,16 @@ from typing import Any, TypeVar
 from irsim.options.registry import BEHAVIORS
 from irsim.policies.policy import Policy
 
-__all__ = ["GROUP", "POLICIES", "RANDOM", "PolicyRegistry", "register_policy"]
+__all__ = ["GROUP", "POLICIES", "RANDOM", "RL_RVO_AUTHORS", "PolicyRegistry", "register_policy"]
 
 GROUP = "irsim.policies"
 """Entry-point group of policies: each entry is a subclass of ``Policy``, or a function that returns a policy."""
 RANDOM = "random"
 """Name of the built-in policy of uniform controls."""
+RL_RVO_AUTHORS = "rl_rvo_authors"
+"""Name of the policy with weights that the user brings."""
+_OWN = {RL_RVO_AUTHORS: "irsim.policies.rl_rvo_authors:RlRvoAuthorsPolicy"}
+"""Policies of irsim itself that are imported on first use."""
 
 Maker = Callable[..., Policy]
 Made = TypeVar("Made", bound=Callable[..., Any])
@@ -57,9 +61,10 @@ class PolicyRegistry:
 
     def _installed(self) -> dict[str, Any]:
         if self._entries is None:
-            from importlib.metadata import entry_points
+            from importlib.metadata import EntryPoint, entry_points
 
-            self._entries = {entry.name: entry for entry in entry_points(group=GROUP)}
+            self._entries = {name: EntryPoint(name, place, GROUP) for name, place in _OWN.items()}
+            self._entries |= {entry.name: entry for entry in entry_points(group=GROUP)}
         return self._entries
 
 
