@@ -104,8 +104,10 @@ def _zone_result(
 
 
 def zones_message(zones: Mapping[str, ZoneResult]) -> str | None:
-    """Say which zones were entered or crossed, how often, and by which object first; None if none was."""
+    """Say which zones were entered or crossed, how often, by which object first, and which were not; None: no zones."""
     parts = [_zone_message(name, zone) for name, zone in zones.items() if zone.objects]
+    empty = [quoted(name) for name, zone in zones.items() if not zone.objects]
+    parts += [f"nobody was in {listed(empty, _MAX_NAMED)}"] if empty else []
     return listed(parts, _MAX_NAMED) if parts else None
 
 

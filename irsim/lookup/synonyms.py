@@ -15,7 +15,7 @@ EVERYDAY: dict[str, str] = {
     "bridges.ros1": "ros, ros 1, noetic, rospy",
     "bridges.mujoco": "physics, wheel slip, co-simulation, inertia of wheels",
     "bridges.carla": "town, autonomous driving simulator, unreal",
-    "robot.behavior.replay": "replay, recorded pedestrians, recorded trajectory, trajectory file, eth ucy, "
+    "robot.behavior.replay": "replay, recorded pedestrians, recorded trajectory, trajectory file, csv, eth ucy, "
     "data set of people",
     "robot.sensors.lidar2d": "lidar, laser, laser scanner, scanner, lidar scanner, range finder, rangefinder, ladar, "
     "720, 720 beams, 1080 beams, 360 beams, distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range"
@@ -103,8 +103,8 @@ EVERYDAY: dict[str, str] = {
     "world.obstacle_map.image": "image map, png, floor plan, bitmap, picture",
     "world.obstacle_map.ros": "ros map, map server, pgm, slam",
     "world.obstacle_map.perlin": "random map, forest, procedural",
-    "world.zones": "zone, region, gate, finish line, trip wire, geofence, enters, crosses a line, restricted area, "
-    "surveillance",
+    "world.zones": "zone, region, gate, finish line, race, criterion, trip wire, geofence, enters, "
+    "crosses a line, restricted area, surveillance",
     "world.plot.title": "title, caption, heading of the picture",
     "world.collision_mode": "collision, crash, hit, bump, collide, impact",
     "world.time_limit": "time limit, timeout, duration, horizon, episode length, max steps, deadline",

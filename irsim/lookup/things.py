@@ -220,7 +220,7 @@ THINGS: dict[str, Guide] = {
         "and the run ends when all robots have arrived, unless it is run until time_limit.",
         "obstacle: {name: pedestrian, kinematics: {name: omni}, shape: {name: circle, radius: 0.25},\n"
         "           state: [5, 1, 1.5708], behavior: {name: replay, times: [0, 2, 5, 8],\n"
-        "           poses: [[5, 1], [5, 3], [5, 3], [5, 6]]}}",
+        "           poses: [[5, 1], [5, 3], [5, 3], [5, 6]]}}  # with vanish: false also after 8 s",
         (
             *("wait", "pause", "dwell", "stands still", "stay put", "warten", "wartet", "pausieren"),
             *("esperar", "espera", "pausa", "等待", "等一下", "停留", "暂停", "站住"),
@@ -235,7 +235,7 @@ THINGS: dict[str, Guide] = {
         "B has start_time = A's way / speed + 1 s and starts beside A's way; a robot that must see by itself when the "
         "way is free needs a program. Overtake: template overtaking. Surround, gather: dash to goals on a ring, "
         "start_time so that the last ones close it. Walk beside or behind a person: the same speed and way, moved by "
-        "the offset.",
+        "the offset; the robot does not see whether the person stops.",
         "obstacle: {name: walker, kinematics: {name: omni}, shape: {name: circle, radius: 0.25}, state: [9, 2.2],\n"
         "           goal: [1, 2], behavior: {name: orca, timeHorizon: 4, sidestep: 10}}",
         (

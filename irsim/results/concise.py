@@ -16,7 +16,7 @@ _DECIMALS = 3
 """Decimals of numbers: millimetres and milliseconds."""
 _WATCHED = {
     "time_in_zone": "in zones for {:g} s",
-    "zone_crossings": "{:g} zone crossings",
+    "zone_crossings": "entered or crossed zones {:g} times",
     "seen_ratio": "seen {:g} of the time",
     "goal_visible_ratio": "saw its goal {:g} of the time",
 }

@@ -59,7 +59,7 @@ class Replay(BehaviorOptions):
     interpolation: Literal["linear", "cubic"] = "linear"
     """Between two times: straight at constant speed, or along a curve without jumps of speed."""
     vanish: Bool = True
-    """With false, and if it is a robot, it is always in the world: at its first and last pose."""
+    """False, and robots always: it stands at its first pose before and at its last after."""
 
     @model_validator(mode="after")
     def _check_times(self) -> Replay:

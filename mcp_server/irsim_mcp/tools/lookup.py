@@ -15,12 +15,12 @@ __all__ = ["PLACE", "tool"]
 PLACE = 1
 
 _DESCRIPTION = """
-    Explain what scenario files may contain, and give templates to start from. Call it first with all topics you need,
-    separated by commas ('crowd, robot.fov, lidar2d'): each is answered briefly. Alone, a topic is answered in full: a
-    template name returns a complete scenario as YAML, with `parameters` filled in; a key or path ('vel_max'), a
-    component ('dash'), a code ('unknown-key'), a metric ('spl') or any word ('parking') returns meaning, unit, range,
-    default and an example; a quantity ('12 ft') is converted. Next: edit the closest template
-    and call run_episode with seeds=3.
+    Explain what scenario files may contain, and give templates to start from. Call it first with all topics you need
+    (at most 12), separated by commas ('crowd, robot.fov, lidar2d'): each is answered briefly. Alone, a topic is
+    answered in full: a template name returns a complete scenario as YAML, with `parameters` filled in; a key or path
+    ('vel_max'), a component ('dash'), a code ('unknown-key'), a metric ('spl') or any word ('parking') returns meaning,
+    unit, range, default and an example; a quantity ('12 ft') is converted. Next: edit the closest template and call
+    run_episode with seeds=3.
 """
 
 
