@@ -17,7 +17,7 @@ from irsim.bridges.ros.bags.importing import BagOptions
 from irsim.bridges.ros.bags.importing import import_bag as convert
 from irsim.bridges.usd.files import export_scene as write
 from irsim.cli import bridge_splats
-from irsim.cli.bridge_likeness import compare_pedestrians
+from irsim.cli.bridge_likeness import compare_pedestrians, pedestrians_suite
 from irsim.cli.bridge_pedestrians import import_pedestrians
 from irsim.cli.guard import FAILED, handle_errors
 from irsim.cli.options import Json
@@ -148,4 +148,5 @@ bridge_app.command("page")(handle_errors(bridge_splats.page))
 bridge_app.command("import-bag")(handle_errors(import_bag))
 bridge_app.command("import-pedestrians")(handle_errors(import_pedestrians))
 bridge_app.command("compare-pedestrians")(handle_errors(compare_pedestrians))
+bridge_app.command("pedestrians-suite")(handle_errors(pedestrians_suite))
 bridge_app.command("export-scene")(handle_errors(export_scene))

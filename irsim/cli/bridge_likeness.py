@@ -1,4 +1,4 @@
-"""``irsim bridge compare-pedestrians``: how human the people of irsim are."""
+"""``irsim bridge compare-pedestrians`` and ``pedestrians-suite``: behaviors and robots beside recorded people."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ from typing import Annotated
 
 import typer
 from rich.table import Table
+from rich.text import Text
 
 from irsim.bridges.pedestrians.comparison import Row
 from irsim.bridges.pedestrians.comparison import compare_pedestrians as compare
 from irsim.bridges.pedestrians.imitation import GOALS, RADIUS
+from irsim.bridges.pedestrians.published import RECORDINGS, write_pedestrians_suite
 from irsim.cli.options import Json
 from irsim.cli.output import console, progress
 from irsim.scenario.behavior_override import split_behaviors
 
-__all__ = ["compare_pedestrians"]
+__all__ = ["compare_pedestrians", "pedestrians_suite"]
 
 
 class Goal(str, Enum):
@@ -63,6 +65,29 @@ def compare_pedestrians(
         "speed, nearest: earth mover's distances from the recorded speeds and distances to the nearest other",
         soft_wrap=True,
     )
+
+
+def pedestrians_suite(
+    eth: Annotated[Path, typer.Option(metavar="FILE", help="obsmat.txt of seq_eth of ETH BIWI.")],
+    hotel: Annotated[Path, typer.Option(metavar="FILE", help="obsmat.txt of seq_hotel of ETH BIWI.")],
+    zara01: Annotated[
+        Path, typer.Option(metavar="FILE", help="crowds_zara01 of UCY, as lines 'frame id x y' in metres.")
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Suite to write.")] = Path(
+        "pedestrians_v1.yaml"
+    ),
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
+    json_output: Json = False,
+) -> None:
+    """Write the suite pedestrians_v1, in which a robot crosses the people of three recordings that you have."""
+    files = dict(zip(RECORDINGS, (eth, hotel, zara01), strict=True))
+    made = write_pedestrians_suite(files, out, overwrite=force)
+    if json_output:
+        typer.echo(json.dumps(asdict(made)))
+        return
+    windows = ", ".join(f"{count} of {name} ({made.lengths[name]:g} s)" for name, count in made.windows.items())
+    console().print(Text.assemble("wrote ", (made.file, "bold"), f": windows: {windows}"), soft_wrap=True)
+    console().print(Text.assemble("run it: ", (f"irsim benchmark {made.file}", "cyan")), soft_wrap=True)
 
 
 def _table(rows: Sequence[Row]) -> Table:

@@ -27,7 +27,7 @@ from irsim.bridges.pedestrians.scenario import (
 from irsim.bridges.pedestrians.tracks import Recording, Track, Window, make_tracks
 from irsim.common.arrays import Floats
 
-__all__ = ["Episodes", "SuiteText", "suite_text"]
+__all__ = ["POLICIES", "Episodes", "SuiteText", "Windows", "suite_text", "windows_of"]
 
 _WAY = 0.6
 """Shortest way of the robot, as a share of the longer side of the recorded area."""
@@ -37,7 +37,7 @@ _FIRST = 1.0
 """Time after the start of a window in which people count as being there [s]."""
 _NAME = 64
 """Longest name of a suite [characters]."""
-_POLICIES = """\
+POLICIES = """\
 policies:
   orca: {name: orca, timeHorizon: 3, safe_radius: 0.15, responsibility: 1}  # people do not give way
   sfm: sfm
@@ -95,6 +95,67 @@ def suite_text(
         BridgeError: No pedestrian is in the window of time and space, or the suite would be too large.
     """
     tracks, _ = make_tracks(recording, places, rate, window)
+    made = windows_of(tracks, layout, episodes, offset=window.start)
+    word = re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("_")
+    title = f"A robot crosses recorded pedestrians of {layout.source}"
+    head = [
+        f"# {len(made.starts)} windows of {made.length:g} s of {json.dumps(layout.source)}, written by `irsim bridge",
+        "# import-pedestrians --suite`. Names of scenarios say when they start. Each seed draws another start and goal",
+        "# of the robot; no pedestrian makes way for it.",
+        "",
+        f"suite: {(word if word[:1].isalpha() else f'recorded_{word}')[:_NAME]}",
+        "version: 1",
+        f"title: {json.dumps(title[:100])}",
+        "scenarios:",
+        *made.lines,
+        "seeds: {first: 0, count: 10, full: 100}",
+        f"steps: {made.steps}",
+        "until: first_collision",
+    ]
+    return SuiteText(checked("\n".join(head) + "\n" + POLICIES), made.starts, made.length, made.whole)
+
+
+@dataclass(frozen=True)
+class Windows:
+    """The windows of a recording, as scenarios of a suite.
+
+    Attributes:
+        lines: Entries of ``scenarios``.
+        starts: When the windows start [s].
+        length: How long they are [s].
+        steps: The same in steps.
+        whole: Whether the recording is as long as a window.
+    """
+
+    lines: list[str]
+    starts: list[float]
+    length: float
+    steps: int
+    whole: bool
+
+
+def windows_of(
+    tracks: Sequence[Track],
+    layout: Layout,
+    episodes: Episodes,
+    *,
+    word: str = "from",
+    offset: float = 0.0,
+    own: bool = False,
+) -> Windows:
+    """Windows of a recording, each with a robot that crosses the recorded area.
+
+    Args:
+        tracks: Its people.
+        layout: Sizes, step time, name of the file.
+        episodes: How it is divided.
+        word: Start of the names of the scenarios.
+        offset: When the tracks start in the recording [s].
+        own: Give the scenarios a horizon and the tag ``word`` of their own.
+
+    Raises:
+        BridgeError: There is no pedestrian, or the windows would be too large.
+    """
     if not tracks:
         what = "no pedestrian is in this window of time and space"
         raise BridgeError("bridge-file", what, "widen --from, --to and --crop")
@@ -107,33 +168,18 @@ def suite_text(
     starts, whole = _starts(tracks, length)
     if len(starts) > episodes.windows:
         starts = sorted(random.Random(episodes.seed).sample(starts, episodes.windows))
-    scenarios: list[str] = []
+    lines: list[str] = []
     kept: list[Track] = []
     for start in starts:
         part = _cut(tracks, start, length)
         kept += part
         check_size(kept)
         ways = [_crossing(part, inner_low, inner_high, layout.radius)]
-        lines = [*world_lines(low, high, layout), *robot_lines(ways, "orca"), *people_lines(part, layout)]
-        at = number(round(start + window.start, 3)).replace("-", "m")
-        scenarios += [f"  - name: from-{at}s", "    scenario:", *(f"      {line}" for line in lines)]
-    word = re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("_")
-    title = f"A robot crosses recorded pedestrians of {layout.source}"
-    head = [
-        f"# {len(starts)} windows of {length:g} s of {json.dumps(layout.source)}, written by `irsim bridge",
-        "# import-pedestrians --suite`. Names of scenarios say when they start. Each seed draws another start and goal",
-        "# of the robot; no pedestrian makes way for it.",
-        "",
-        f"suite: {(word if word[:1].isalpha() else f'recorded_{word}')[:_NAME]}",
-        "version: 1",
-        f"title: {json.dumps(title[:100])}",
-        "scenarios:",
-        *scenarios,
-        "seeds: {first: 0, count: 10, full: 100}",
-        f"steps: {steps}",
-        "until: first_collision",
-    ]
-    return SuiteText(checked("\n".join(head) + "\n" + _POLICIES), starts, length, whole)
+        scene = [*world_lines(low, high, layout), *robot_lines(ways, "orca"), *people_lines(part, layout)]
+        at = number(round(start + offset, 3)).replace("-", "m")
+        lines += [f"  - name: {word}-{at}s", *([f"    steps: {steps}", f"    tags: [{word}]"] if own else [])]
+        lines += ["    scenario:", *(f"      {line}" for line in scene)]
+    return Windows(lines, starts, length, steps, whole)
 
 
 def _starts(tracks: Sequence[Track], length: float) -> tuple[list[float], bool]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tests.benchmarks.pedestrians import human
+from tests.benchmarks.pedestrians import human, robot
 
 PAGE = Path(__file__).resolve().parents[3] / "skills" / "irsim-benchmark" / "results" / "pedestrians.md"
 TEXT = Path(__file__).with_name("page.md")
@@ -17,9 +17,11 @@ TEXT = Path(__file__).with_name("page.md")
 def page(data: Path) -> str:
     """The whole page."""
     text = TEXT.read_text(encoding="utf-8")
-    return text.format(**human.parts(human.compare(data)))
+    return text.format(**human.parts(human.compare(data)), **robot.parts(*robot.measure(data)))
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page(Path(sys.argv[1])), encoding="utf-8")
+    folder = Path(sys.argv[1])
+    PAGE.write_text(page(folder), encoding="utf-8")
+    robot.EPISODES.write_text("\n".join(robot.episodes(robot.plan_of(folder))) + "\n", encoding="utf-8")
     print(f"wrote {PAGE}")

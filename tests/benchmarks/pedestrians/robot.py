@@ -1,0 +1,80 @@
+"""The part of the page on a robot among recorded people: the suite ``pedestrians_v1``."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from irsim.benchmarks.episode import Job, Task, run_task
+from irsim.benchmarks.plan import Plan
+from irsim.benchmarks.stored import measure_plan
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.bridges.pedestrians.published import RECORDINGS, write_pedestrians_suite
+from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion
+from tests.benchmarks.pedestrians.human import FILES
+
+POLICIES = ("orca", "sfm", "dash", "avocado", "footprint_orca")
+EPISODES = Path(__file__).with_name("episodes.csv")
+"""Episodes on record: the first seed of each window of hotel under the policies of the suite."""
+
+
+def plan_of(data: Path, policies: Sequence[str] | None = POLICIES, **chosen: object) -> Plan:
+    """The plan of the suite over the files of a folder."""
+    files = {name: data / file for name, file in zip(RECORDINGS, FILES.values(), strict=True)}
+    with tempfile.TemporaryDirectory() as folder:
+        made = write_pedestrians_suite(files, Path(folder) / "pedestrians_v1.yaml")
+        return suite_plan(made.file, policies=policies, **chosen)  # type: ignore[arg-type]
+
+
+def episodes(plan: Plan) -> list[str]:
+    """Lines of the first seed of each window of hotel: scenario, policy, outcome, number of steps."""
+    lines = []
+    for one in plan.scenarios:
+        for name, policy in list(plan.policies.items())[:3] if one.name.startswith("hotel-") else ():
+            result = run_task(Task(Job(one.text, None, policy, None, True, (), (), plan.until), plan.seeds[0]))
+            lines.append(f"{one.name},{name},{result['outcome']},{result['steps']}")
+    return lines
+
+
+def measure(data: Path) -> tuple[Plan, BenchmarkResult]:
+    """Run the suite."""
+    plan = plan_of(data)
+    return plan, measure_plan(plan)
+
+
+def parts(plan: Plan, result: BenchmarkResult) -> dict[str, str]:
+    """What this part puts into the page."""
+    lines = [
+        "| recording | policy | n | success | collision | time-out | time [s] | nearest [m] | within 0.5 m |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for where in [*(f"(all {name})" for name in RECORDINGS), "(all)"]:
+        rows = [row for row in result.rows if row.scenario == where]
+        lines += [_line(where, policy, row) for policy, row in zip(POLICIES, rows, strict=True)]
+    return {"hash": plan.suite_hash, "robots": "\n".join(lines)}
+
+
+def _line(where: str, policy: str, row: BenchmarkRow) -> str:
+    metrics = row.metrics
+    cells = [
+        where.strip("()").removeprefix("all ") if where != "(all)" else "all",
+        f"`{policy}`",
+        str(row.episodes),
+        _share(row.success),
+        _share(row.collision),
+        _share(row.timeout),
+        _mean(metrics["time_to_goal"], 1),
+        _mean(metrics["distance_to_human_min"], 2),
+        _mean(metrics["personal_space_intrusion_ratio"], 2),
+    ]
+    return f"| {' | '.join(cells)} |"
+
+
+def _share(share: Proportion) -> str:
+    span = "" if share.low is None or share.high is None else f" [{100 * share.low:.0f}, {100 * share.high:.0f}]"
+    return f"{100 * share.rate:.0f} %{span}"
+
+
+def _mean(value: Estimate, digits: int) -> str:
+    return "–" if value.mean is None else f"{value.mean:.{digits}f}"
