@@ -72,7 +72,7 @@ def _number(key: str, relation: Relation, material: Material, scene: GradedScene
     """The value of a relation; where bodies differ, the strictest value, so that a bound holds for each of them."""
     ranges = [_range(material, scene, selection, name) for selection, name in relation.references]
     results = [float(evaluate(relation.expression, dict(zip(relation.names, values, strict=True))))
-               for values in itertools.product(*ranges)]  # fmt: skip
+               for values in itertools.product(*map(set, ranges))]  # fmt: skip
     if key not in ("ge", "le") and max(results) - min(results) > _SAME:
         raise LookupError(f"{relation} is {min(results):g} to {max(results):g}: no single value")
     return min(results) if key == "le" else max(results)

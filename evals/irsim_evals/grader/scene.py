@@ -39,12 +39,13 @@ class GradedScene:
         seed: Its seed.
         env: The environment at its start.
         bodies: Robots and obstacles in the order of the file; neither the map nor the walls round the world.
+        kept: What was computed once and is asked for again.
     """
 
     seed: int
     env: Env
     bodies: list[GradedBody]
-    _paths: dict[Any, Any] = field(default_factory=dict, repr=False)
+    kept: dict[Any, Any] = field(default_factory=dict, repr=False)
 
     @property
     def world(self) -> Any:
@@ -129,11 +130,11 @@ class GradedScene:
     def _clearance(self, radius: float, plugs: tuple[tuple[float, ...], ...]) -> tuple[core.Clearance, float]:
         cells = cells_over(self.bounds, max(radius / _CELLS_PER_RADIUS, 1e-3), _MAX_CELLS)
         key = (cells, plugs)
-        if key not in self._paths:
+        if key not in self.kept:
             discs = [([core.Circle(radius=r, center=[0, 0])], [x, y, 0.0]) for x, y, r in plugs]
             terrain = core.Terrain(FAR, [*self.things, *discs]) if discs else self.terrain
-            self._paths[key] = core.Clearance(terrain, cells)
-        return self._paths[key], _HALF_DIAGONAL * max(cells[1])
+            self.kept[key] = core.Clearance(terrain, cells)
+        return self.kept[key], _HALF_DIAGONAL * max(cells[1])
 
 
 def open_scene(scenario: ResolvedScenario, seed: int) -> GradedScene:

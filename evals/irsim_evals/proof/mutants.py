@@ -18,7 +18,7 @@ from irsim_evals.grader.artefact import Answer, from_folder
 from irsim_evals.grader.matching import matches
 from irsim_evals.grader.material import write_files
 from irsim_evals.proof import attacks, attacks_on_places, mutants_of_entries, mutants_of_values
-from irsim_evals.proof.operators import NUMBER, OPERATORS, Data, plain
+from irsim_evals.proof.operators import LOADER, NUMBER, OPERATORS, Data, plain
 
 __all__ = ["attacks_on_answer", "mutants_of", "mutants_of_answer", "mutants_of_text"]
 
@@ -56,7 +56,7 @@ def mutants_of_text(text: str) -> Iterator[tuple[str, str, Data]]:
             new = "1" if value == 0 else f"{value * 2:g}"
             changed = text[: start + match.start()] + new + text[start + match.end() :]
             try:
-                data = yaml.safe_load(changed)
+                data = yaml.load(changed, LOADER)
             except yaml.YAMLError:
                 continue
             if isinstance(data, dict):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import re
 from collections.abc import Callable, Iterator
 from typing import Any, TypeGuard
@@ -14,7 +13,7 @@ from irsim.scenario.model.lookup import at
 from irsim_evals.grader.scene import GradedScene
 
 __all__ = [
-    "NUMBER", "OPERATORS", "REWRITES", "Change", "Data", "component", "dump", "each_entry", "entries",
+    "LOADER", "NUMBER", "OPERATORS", "REWRITES", "Change", "Data", "component", "dump", "each_entry", "entries",
     "is_pose", "items_of", "operator", "plain", "rewrite", "sensors_of",
 ]  # fmt: skip
 
@@ -28,7 +27,8 @@ REWRITES: dict[str, Rewrite] = {}
 NUMBER = re.compile(r"(?<![\w.#\"'-])(-?\d+(?:\.\d+)?)(?![\w.:\"'])")
 """A number in the text of a scenario."""
 _DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
-"""The one in C is ten times as fast; some installations lack it."""
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+"""Those in C are ten times as fast; some installations lack them."""
 
 
 def operator(function: Operator) -> Operator:
@@ -69,11 +69,18 @@ def is_pose(value: Any) -> TypeGuard[list[Any]]:
     return isinstance(value, list) and len(value) > 1 and is_number(value[0])
 
 
+def _changeable(data: Data, section: str, number: int) -> tuple[Data, Data]:
+    """A scenario with a copy of one entry, and that copy, which can be changed in place; all else is shared."""
+    given, entry = data[section], plain(items_of(data, section)[number])
+    made = [*given[:number], entry, *given[number + 1 :]] if isinstance(given, list) else entry
+    return {**data, section: made}, entry
+
+
 def each_entry(data: Data, change: Callable[[Data], Any], what: str) -> Change:
     """For each entry a copy in which it was changed in place; none where the change returns False."""
     for section, number, _ in entries(data):
-        made = copy.deepcopy(data)
-        if change(items_of(made, section)[number]) is not False:
+        made, entry = _changeable(data, section, number)
+        if change(entry) is not False:
             yield f"{section}[{number}]: {what}", made
 
 

@@ -90,10 +90,17 @@ def prove(
     choice = random.Random(seed)
     keep = (lambda: choice.random() < _QUICK_SHARE) if quick else (lambda: True)
     names = ids if ids is not None else case_ids(store, sets=True)
-    trials = [trial for name in names for trial in trials_of(name, proof.left_out, seed, keep, store)]
+    trials: list[Trial] = []
     rng = random.Random(f"second {seed}")
-    jobs = [(trial, rng.random() < _SECOND_SHARE) for trial in trials]
-    results = run_all(tried, jobs, None, 2 * SECONDS, "grading")  # a trial is also compared, and graded twice
+
+    def jobs() -> Iterator[tuple[Trial, bool]]:
+        """Each trial is graded while the next ones are still written; all are there before the first result."""
+        for name in names:
+            for trial in trials_of(name, proof.left_out, seed, keep, store):
+                trials.append(trial)
+                yield trial, rng.random() < _SECOND_SHARE
+
+    results = run_all(tried, jobs(), None, 2 * SECONDS, "grading")  # a trial is also compared, and graded twice
     for number, result in enumerate(results):
         _note(proof, trials[number], result)
         if progress is not None:

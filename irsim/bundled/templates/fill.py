@@ -7,6 +7,7 @@ syntax tree is walked node by node; ``eval`` is never used.
 from __future__ import annotations
 
 import ast
+import functools
 import math
 import operator
 import re
@@ -87,7 +88,13 @@ def evaluate(expression: str, values: Mapping[str, Any]) -> Any:
                 return _FUNCTIONS[name](*(value(argument) for argument in arguments))
         raise ValueError(f"a template expression cannot contain {ast.unparse(node)}")
 
-    return value(ast.parse(expression, mode="eval").body)
+    return value(_parsed(expression))
+
+
+@functools.lru_cache(maxsize=4096)
+def _parsed(expression: str) -> ast.expr:
+    """The syntax of an expression; many are evaluated again and again with other values."""
+    return ast.parse(expression, mode="eval").body
 
 
 def _index(value: Any) -> int:

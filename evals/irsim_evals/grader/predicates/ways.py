@@ -211,6 +211,14 @@ class Before(OfBodies, EpisodePredicate):
 
 def _narrowest(scene: GradedScene, body: GradedBody) -> Gap:
     """The narrowest place on the widest way of a body over its goals."""
+    key = ("narrowest", body.index)
+    if key not in scene.kept:
+        scene.kept[key] = _measured(scene, body)
+    gap: Gap = scene.kept[key]
+    return gap
+
+
+def _measured(scene: GradedScene, body: GradedBody) -> Gap:
     x0, y0, x1, y1 = scene.bounds
     edge = core.Linestring(vertices=[[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])
     start = StartState(scene.seed, {}, {}, [*scene.things, ([edge], [0.0, 0.0, 0.0])], scene.bounds)
@@ -218,5 +226,5 @@ def _narrowest(scene: GradedScene, body: GradedBody) -> Gap:
     clearance = core.Clearance(start.terrain, cells)
     grid = ClearanceGrid(start, scene.bounds, cells, clearance, math.sqrt(0.5) * max(cells[1]))
     places = [clearance.climb(place[:2], math.hypot(x1 - x0, y1 - y0)) for place in (body.pose, *body.goals)]
-    gaps = [narrowest_gap(grid, a, b) or Gap(0.0, b, 0.0) for a, b in itertools.pairwise(places)]
+    gaps = [narrowest_gap(grid, a, b) or Gap(0.0, b, 0.0) for a, b in dict.fromkeys(itertools.pairwise(places))]
     return min(gaps, key=lambda gap: gap.width)

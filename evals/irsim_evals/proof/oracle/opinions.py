@@ -319,8 +319,11 @@ class _Look:
         closest = math.inf
         for _ in range(self._steps(seconds)):
             self.env.step()
+            at = {id(thing): thing.at[:2] for thing in others}
             for thing, other in itertools.product(things, others):
                 if thing is not other and id(thing) not in hit:
+                    if math.dist(at[id(thing)], at[id(other)]) - thing.reach - other.reach > max(closest, 0.0):
+                        continue  # they are farther apart than two others
                     gap = distance_between(thing, other)
                     closest = min(closest, abs(gap))
                     if gap <= 0:

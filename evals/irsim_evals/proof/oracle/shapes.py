@@ -3,6 +3,8 @@ left of the world."""
 
 from __future__ import annotations
 
+import math
+from functools import cached_property
 from typing import Any
 
 import shapely
@@ -12,6 +14,8 @@ __all__ = ["Point", "Thing", "blocked", "distance_between", "gets_there", "to_po
 Point = tuple[float, float]
 _QUADRANT = 32
 """Sides of a quarter of a disc."""
+_SLACK = 1e-6
+"""Added to a reach, which is rounded [m]."""
 
 
 class Thing:
@@ -33,6 +37,11 @@ class Thing:
         """Present x, y, heading."""
         state = self.view.state
         return float(state[0, 0]), float(state[1, 0]), float(state[2, 0])
+
+    @cached_property
+    def reach(self) -> float:
+        """Distance of its outline from its position, at most [m]."""
+        return self.radius or max(math.dist(corner, self.at[:2]) for corner in self.view.vertices.T) + _SLACK
 
     @property
     def outline(self) -> Any:
