@@ -893,7 +893,8 @@ class State:
     def trajectory(self, row: int, first: int = 0) -> Floats:
         """(K - first, 3 + E) state after each executed step since the last reset, if the state was made with history.
 
-        Steps in which the object was static or stopped are left out, and so are the ``first`` ones of the others.
+        Steps in which the object was static or stopped are left out, and so are the ``first`` ones of the others; a
+        stopped one that can be pushed (`collision_mode: contact`) has them all.
         """
     def standings(self, row: int) -> tuple[NDArray[np.int64], Floats, Flags]:
         """(K,) steps, (K, 3) goals and (K,) `stopped` of an object that can move, one entry per change.

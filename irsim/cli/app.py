@@ -27,6 +27,7 @@ COMMANDS = {
     "run": "run:run",
     "inspect": "inspect:inspect",
     "diff-runs": "diff_runs:diff_runs",
+    "audit": "audit:audit",
     "replay": "replay:replay",
     "export": "export:export",
     "benchmark": "benchmark:benchmark",

@@ -10,6 +10,7 @@ SENTENCES = {
     "run": "Simulate a scenario until every robot has arrived or collided, or the time limit is reached.",
     "inspect": "Print tables of a run that was recorded with `irsim run --record`.",
     "diff-runs": "Find the first step in which two recorded runs differ, and in what; the exit code is 1 if they differ.",
+    "audit": "Check recorded runs from their files alone: contacts, limits, arrivals, outcome and metrics; no engine runs.",
     "replay": "Write a recorded run as one HTML page: play it, scrub, follow a robot, jump to events.",
     "export": "Write recorded runs for other programs: tables, ROS 2 bags, datasets, cameras, scenes of other simulators.",
     "benchmark": "Compare policies: run every scenario with every policy and the same seeds, on all cores.",

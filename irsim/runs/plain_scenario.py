@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
+from irsim.common.outline import Cells, Circle, Line, Part, outline, points_of
 from irsim.runs.files import record_json
 from irsim.scenario.resolve.resolved import ObjectRecord
 
@@ -26,11 +27,13 @@ def plain_scenario(simulation: Simulation) -> bytes:
     """World and objects with all defaults, and the initial pose of each object, as JSON.
 
     Options that successive objects share are stored once, in ``options``; each object has the index of its options.
-    Numbers that JSON lacks are the words ``Infinity``, ``-Infinity`` and ``NaN``. Outlines of random shapes and cells
-    of maps are omitted, as scenario and seed reproduce them.
+    Numbers that JSON lacks are the words ``Infinity``, ``-Infinity`` and ``NaN``. ``built`` has what the seed may have
+    decided, one entry per object: ``outlines`` (parts in the body frame [m]; a map has only its box, as its cells are
+    in a file of their own), the limits ``vel_min``, ``vel_max`` and ``acce`` of its controls, and ``start_step``, until
+    which it waits.
     """
     scenario, goals = simulation.scenario, simulation.state.goals
-    objects, options = list[dict[str, Any]](), list[dict[str, Any]]()
+    objects, options, state = list[dict[str, Any]](), list[dict[str, Any]](), simulation.state
     last: tuple[Any, ...] = ()
     for row, (record, pose) in enumerate(zip(scenario.objects, simulation.pose.tolist(), strict=True)):
         like = _like(record)
@@ -48,6 +51,13 @@ def plain_scenario(simulation: Simulation) -> bytes:
         "radius": simulation.radius.tolist(),
         "objects": objects,
         "options": options,
+        "built": {
+            "outlines": [[_part(part) for part in outline(state, row).parts] for row in range(len(objects))],
+            "vel_min": state.vel_min.tolist(),
+            "vel_max": state.vel_max.tolist(),
+            "acce": state.acce.tolist(),
+            "start_step": state.start_step.tolist(),
+        },
     }
     return record_json(whole, inf_nan_mode="strings", serialize_unknown=True)
 
@@ -64,6 +74,16 @@ def with_options(data: Any) -> dict[str, Any]:
     for item in objects:
         del item["options"]
     return {**{key: value for key, value in data.items() if key != "options"}, "objects": objects}
+
+
+def _part(part: Part) -> dict[str, Any]:
+    """A part of an outline as plain data."""
+    if isinstance(part, Circle):
+        return {"kind": "circle", "center": part.center, "radius": part.radius}
+    kind = "cells" if isinstance(part, Cells) else "polygon"
+    if isinstance(part, Line):
+        kind = "room" if part.closed else "line"
+    return {"kind": kind, "vertices": points_of(part).tolist()}
 
 
 def _values(model: Any) -> Any:

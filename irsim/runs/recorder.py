@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import platform
 import sys
@@ -21,6 +22,7 @@ import irsim._core as core
 from irsim.common.files import Buffer
 from irsim.common.hashing import digest
 from irsim.common.installed import version
+from irsim.runs.cells import CELLS_FILE, pack_cells
 from irsim.runs.chunks import PieceWriter, pack_chunk
 from irsim.runs.files import DIGEST_LENGTH, Claim, RunError, claim, create_file, record_json, replace_file
 from irsim.runs.plain_scenario import plain_scenario
@@ -144,6 +146,7 @@ class Recorder:
             create_file(self._path("resolved.json"), resolved)
             self._meta["resolved"] = digest(resolved)[:DIGEST_LENGTH]
             self._meta["maps"] = self._copy_maps()
+            self._keep_cells()
             self._write_meta()
         except BaseException:
             self._stop()
@@ -166,6 +169,17 @@ class Recorder:
             create_file(self._path(file), content)
             kept.append([name, file])
         return kept
+
+    def _keep_cells(self) -> None:
+        """Write the occupied cells of the map, from which contacts with it can be checked without its file."""
+        simulation = self._simulation
+        row = next((row for row, record in enumerate(simulation.scenario.objects) if record.is_map), None)
+        grid = None if row is None else simulation.state.cells(row)
+        if grid is None or math.prod(grid.shape) > 8 * _MAX_MAP_BYTES:
+            return
+        content = pack_cells(grid.occupied, grid.origin, grid.cell)
+        create_file(self._path(CELLS_FILE), content)
+        self._meta["cells"] = digest(content)[:DIGEST_LENGTH]
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
         """Advance the simulation like :meth:`irsim.simulation.simulation.Simulation.advance`, and record it."""

@@ -276,6 +276,8 @@ def past_poses(simulation: Simulation, row: int) -> Floats | None:
     if not len(since) or since[0] != 0:
         return None
     held = np.repeat(stopped.astype(bool), np.diff([*since, steps + 1]))[:-1]  # a stopped object records no state
+    if simulation.scenario.world.collision_mode == "contact":
+        held[:] = False  # unless it can be pushed
     held[: max(0, begin - 1)] = True
     end = _last_step(simulation, row) if gone else steps
     held[end:] = True

@@ -27,6 +27,8 @@ CHOICES = ("movers", "robots", "people", "all")
 """Words that choose objects: robots and obstacles that can move, robots, obstacles that can move, or all objects."""
 _BLOCK_NUMBERS = 2_000_000
 """Number of values of one block, which bounds the memory of an export."""
+_WORLD_FACTS = ("collision_mode", "contacts", "integration", "after_arrival", "step_time", "time_limit")
+"""Keys of the world without which nobody can judge contacts and arrivals."""
 _MAX_BLOCK_ROWS = 65_536
 
 
@@ -248,7 +250,8 @@ class ExportedEpisode:
     def facts(self) -> dict[str, Any]:
         """Facts of the run, as JSON types: everything that reproduces it, its objects and its lidars."""
         meta, result = self.run.meta, self.run.result
-        pairs = zip(self.run.resolved["objects"], self.run.resolved["radius"], strict=True)
+        resolved = self.run.resolved
+        objects, built = resolved["objects"], resolved.get("built", {})
         named = ("id", "scenario", "seed", "step_time", "horizon", "options", "irsim", "python", "numpy", "created")
         return {
             **{key: meta.get(key) for key in named},
@@ -258,7 +261,11 @@ class ExportedEpisode:
             "last_step": self.last_step,
             "notes": self.run.notes,
             "scenario_text": self.run.scenario_text,
-            "objects": [_object_facts(item, radius) for item, radius in pairs],
+            "world": {key: resolved["world"].get(key) for key in _WORLD_FACTS},
+            "objects": [
+                {**_object_facts(item, resolved["radius"][row]), **{key: built[key][row] for key in built}}
+                for row, item in enumerate(objects)
+            ],
             "lidars": [
                 {
                     "object": self.actors[lidar.actor].name,
@@ -335,6 +342,10 @@ def _object_facts(item: dict[str, Any], radius: float) -> dict[str, Any]:
         "role": item["role"],
         "static": item["static"],
         "drive": drive["name"] if isinstance(drive, dict) else None,
+        "wheelbase": item.get("wheelbase"),
+        "goal_threshold": item.get("goal_threshold"),
+        "arrive_mode": item.get("arrive_mode"),
+        "unobstructed": item.get("unobstructed"),
         "shape": item["shape"],
         "radius": radius,
         "pose": item["state"][:3],

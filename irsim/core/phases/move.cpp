@@ -90,7 +90,8 @@ void finish(const World& world, State& state, int w) {
   for (int i = 0; i < world.objects; ++i) {
     const int row = first + i;
     state.given[row] = 0;
-    if (!world.is_static[i] && !state.stopped[row] && !state.absent(row)) remember(state, row);
+    const bool held = state.stopped[row] && world.collision_mode != kContact;  // others can push a robot that arrived
+    if (!world.is_static[i] && !held && !state.absent(row)) remember(state, row);
   }
 }
 

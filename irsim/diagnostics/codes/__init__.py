@@ -1,5 +1,6 @@
 """The closed list of codes of diagnostics and errors, by subject; ``irsim describe CODE`` explains a code."""
 
+from irsim.diagnostics.codes.audits import AUDITS
 from irsim.diagnostics.codes.code import Code
 from irsim.diagnostics.codes.files_and_keys import FILE_AND_YAML, KEYS_AND_VALUES, MAPS_AND_LIMITS
 from irsim.diagnostics.codes.objects import OBJECTS
@@ -10,5 +11,5 @@ __all__ = ["CODES", "TOOL_CODES", "Code"]
 CODES: dict[str, Code] = {**FILE_AND_YAML, **KEYS_AND_VALUES, **OBJECTS, **MAPS_AND_LIMITS}
 """Codes of findings about a scenario."""
 
-TOOL_CODES: dict[str, Code] = {**TOOLS, **BRIDGES}
+TOOL_CODES: dict[str, Code] = {**TOOLS, **BRIDGES, **AUDITS}
 """Codes of errors outside scenarios: of the command line and other tools."""

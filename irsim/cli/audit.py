@@ -1,0 +1,109 @@
+"""``irsim audit``: recompute recorded runs from their files alone, and compare."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.table import Table
+
+from irsim.cli.guard import FAILED
+from irsim.cli.options import Json
+from irsim.cli.output import console, print_json
+from irsim.common.text import clean
+from irsim.runs.audit.audit import audit_runs
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from irsim.results.audit import AuditFinding, RunAudit
+
+__all__ = ["audit"]
+
+MAX_ROWS = 10
+"""Differences, contacts within the tolerance and robots of each run that are shown."""
+
+
+def audit(
+    runs: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="RUN...",
+            help="Id, folder or a file of a recorded run, or 'last'; several are audited one by one.",
+            show_default=False,
+        ),
+    ],
+    json_output: Json = False,
+) -> None:
+    """Check recorded runs from their files alone: contacts, limits, arrivals, outcome and metrics; no engine runs.
+
+    Contacts are recomputed within steps, too, along the twist of each object. The exit code is 1 if anything differs
+    from the record, or if a run cannot be read.
+    """
+    result = audit_runs(runs)
+    if json_output:
+        print_json(result)
+    else:
+        out = console()
+        for run in result.runs:
+            _show(run, out)
+        if len(result.runs) > 1:
+            out.print(result.summary, soft_wrap=True)
+    if not result.equal:
+        raise typer.Exit(FAILED)
+
+
+def _show(run: RunAudit, out: Console) -> None:
+    out.print(clean(run.summary, 600), soft_wrap=True, style="green" if run.equal else "bold red")
+    for check in run.checks:
+        note = f" ({clean(check.note, 300)})" if check.note else ""
+        count = f"{check.compared} values" if check.compared else ""
+        odd = f", {check.differences} differ" if check.differences else ""
+        out.print(f"  {check.name}: {check.status.replace('_', ' ')} {count}{odd}{note}".rstrip(), soft_wrap=True)
+    for finding in run.findings[:MAX_ROWS]:
+        print_finding(finding, out)
+    if run.finding_count > MAX_ROWS:
+        out.print(f"  ... and {run.finding_count - MAX_ROWS} more differences")
+    for near in run.within_tolerance[:MAX_ROWS]:
+        pair = f"{clean(near.object, 40)} and {clean(near.partner, 40)} in step {near.step}"
+        out.print(f"  within tolerance: {pair}, {near.gap:.2g} m apart, {near.note}", soft_wrap=True)
+    if run.within_tolerance_count > MAX_ROWS:
+        out.print(f"  ... and {run.within_tolerance_count - MAX_ROWS} more within the tolerance")
+    if not run.robots:
+        return
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for heading in ("robot", "outcome", "arrived s", "path m", "mean m/s", "clearance m", "contacts", "within steps"):
+        table.add_column(heading, overflow="fold")
+    for robot in run.robots[:MAX_ROWS]:
+        numbers = (robot.time_to_goal, robot.path_length, robot.mean_speed, robot.min_clearance)
+        cells = ("-" if number is None else f"{number:.4g}" for number in numbers)
+        counts = (str(robot.contacts), str(robot.contacts_between_steps))
+        table.add_row(clean(robot.name, 40), robot.outcome, *cells, *counts)
+    out.print(table)
+    if len(run.robots) > MAX_ROWS:
+        out.print(f"... and {len(run.robots) - MAX_ROWS} more robots")
+    out.print(
+        f"contacts nearer than {run.tolerance:g} m to touching are not decided; an overlap of more than "
+        f"{max(run.unseen_depth, run.tolerance):.1g} m cannot have been missed between the poses that were looked at",
+        style="dim",
+        soft_wrap=True,
+    )
+
+
+def print_finding(finding: AuditFinding, out: Console) -> None:
+    """Print a difference with both values and the tolerance."""
+    values = ""
+    if finding.recorded is not None or finding.recomputed is not None:
+        values = f": recorded {_value(finding.recorded)}, recomputed {_value(finding.recomputed)}"
+        values += "" if finding.tolerance is None else f", tolerance {finding.tolerance:.2g}"
+    where = f"{clean(finding.path, 200)}: " if finding.path else ""
+    fix = f"; {clean(finding.fix, 300)}" if finding.fix else ""
+    out.print(f"  {finding.code}: {where}{clean(finding.message, 400)}{values}{fix}", soft_wrap=True)
+
+
+def _value(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.9g}"
+    if isinstance(value, list):
+        return f"[{', '.join(_value(number) for number in value)}]"
+    return "nothing" if value is None else clean(str(value), 100)

@@ -1,0 +1,40 @@
+"""Codes of what an audit of recorded runs and submissions finds."""
+
+from __future__ import annotations
+
+from irsim.diagnostics.codes.code import Code
+
+__all__ = ["AUDITS"]
+
+AUDITS: dict[str, Code] = {
+    "audit-motion": Code(
+        "object is not where its drive takes it",
+        "The recorded pose is not the one that the drive reaches from the pose before under the recorded control, or "
+        "an object that stands still has moved. A pose or a control of the record was changed.",
+    ),
+    "audit-limit": Code(
+        "limit exceeded",
+        "A recorded control lies outside vel_min and vel_max, or changes by more than acce allows in one step.",
+    ),
+    "audit-contact": Code(
+        "contact differs",
+        "Outlines and poses of the record give other contacts than its events and flags: one is missing, one is too "
+        "many, or one has another time within its step.",
+    ),
+    "audit-arrival": Code(
+        "arrival differs",
+        "The distance to the recorded goal, the flags and the events of arrival do not agree.",
+    ),
+    "audit-outcome": Code(
+        "outcome differs",
+        "The outcome that follows from arrivals and collisions, the number of steps or the end of the run is not the "
+        "one of result.json.",
+    ),
+    "audit-metric": Code(
+        "metric differs", "A metric that is computed from the recorded poses is not the one of result.json."
+    ),
+    "record-incomplete": Code(
+        "record lacks what an audit needs",
+        "The run was recorded by a version that kept no outlines and limits; record it again with this one.",
+    ),
+}

@@ -1,0 +1,138 @@
+"""Typed results of ``irsim audit``."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from irsim.results.base import Result
+
+__all__ = ["AuditCheck", "AuditFinding", "AuditResult", "AuditedRobot", "NearContact", "RunAudit"]
+
+Value = float | int | bool | str | list[float | None] | None
+"""A recorded or recomputed value."""
+
+
+class AuditCheck(Result):
+    """One kind of comparison."""
+
+    name: str
+    """``motion``, ``limits``, ``contacts``, ``arrivals``, ``outcome``, ``metrics``; of a submission also others."""
+    status: Literal["equal", "different", "not_checked"]
+    """Whether everything that was compared is equal within the tolerances."""
+    compared: int
+    """Number of values that were compared."""
+    differences: int
+    """Number of them that differ."""
+    note: str = ""
+    """What was left out, and why; else empty."""
+
+
+class AuditFinding(Result):
+    """A place at which a record and what is recomputed from it differ."""
+
+    code: str
+    """Code; ``irsim describe CODE`` explains it."""
+    object: str | None = None
+    """Name of the object."""
+    partner: str | None = None
+    """Name of the other object of a contact."""
+    step: int | None = None
+    """Step; 0 is the initial state."""
+    recorded: Value = None
+    """The value in the record."""
+    recomputed: Value = None
+    """The value that the audit has computed."""
+    tolerance: float | None = None
+    """Difference up to which the two count as equal, in the unit of the values."""
+    message: str
+    """What differs, in one sentence."""
+    path: str | None = None
+    """The file, or the place in it, where it stands; None for the run itself."""
+    fix: str | None = None
+    """What to do about it."""
+
+
+class NearContact(Result):
+    """A contact of which nobody can say from the record whether it took place: the two touch within the tolerance."""
+
+    object: str
+    """Name of the first object."""
+    partner: str
+    """Name of the second object."""
+    step: int
+    """Step."""
+    gap: float
+    """Distance of the two [m]; 0 or less if they touch."""
+    note: str
+    """Whether the record has this contact."""
+
+
+class AuditedRobot(Result):
+    """What the audit has computed for one robot."""
+
+    name: str
+    """Name."""
+    outcome: Literal["success", "collision", "timeout"]
+    """Its outcome."""
+    time_to_goal: float | None
+    """Time of its first arrival [s]; None if it did not arrive."""
+    path_length: float
+    """Distance that it travelled in the whole run [m]."""
+    mean_speed: float | None
+    """Distance travelled until it arrived, divided by the time that took [m/s]."""
+    min_clearance: float | None
+    """Smallest distance to any other object at the ends of steps until it arrived [m]; below 0: overlap."""
+    nearest: str | None
+    """Name of the object at that distance."""
+    contacts: int
+    """Number of its contacts that count as collisions."""
+    contacts_between_steps: int
+    """Number of its contacts that began and ended within one step."""
+
+
+class RunAudit(Result):
+    """The result of ``irsim audit`` for one recorded run."""
+
+    run: str
+    """The run, as it was named."""
+    equal: bool
+    """Whether everything that was compared is equal."""
+    summary: str
+    """One sentence."""
+    outcome: Literal["success", "collision", "timeout"] | None = None
+    """The recomputed outcome; None if the run has no robots or has not ended."""
+    steps: int = 0
+    """Number of steps."""
+    objects: int = 0
+    """Number of objects."""
+    checks: list[AuditCheck] = Field(default_factory=list)
+    """What was compared."""
+    findings: list[AuditFinding] = Field(default_factory=list)
+    """Where the record differs, the first 50."""
+    finding_count: int = 0
+    """Number of differences."""
+    within_tolerance: list[NearContact] = Field(default_factory=list)
+    """Contacts within the tolerance of touching, the first 50."""
+    within_tolerance_count: int = 0
+    """Number of such contacts."""
+    tolerance: float = 0.0
+    """Distance within which contacts cannot be decided [m]."""
+    unseen_depth: float = 0.0
+    """How deep two bodies can have overlapped within a step without being seen [m]: the bound of the subdivision."""
+    robots: list[AuditedRobot] = Field(default_factory=list)
+    """What was computed for each robot."""
+    version: str = ""
+    """Version of irsim that recorded the run."""
+
+
+class AuditResult(Result):
+    """The result of ``irsim audit``."""
+
+    equal: bool
+    """Whether everything is equal in everything that was audited."""
+    summary: str
+    """One sentence."""
+    runs: list[RunAudit]
+    """The recorded runs, in the order in which they were named."""
