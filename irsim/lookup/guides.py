@@ -130,6 +130,18 @@ GUIDES: dict[str, Guide] = {
         "irsim run hall.yaml --record && irsim export last --to usd -o hall.usdc",
         ("export", "export formats", "formats", "irsim export", "other programs", "recorded run as a file"),
     ),
+    "audit": Guide(
+        "checking a recorded run from its files alone",
+        "`irsim audit RUN` (id, folder, a file of it, several, --json) reads the record and computes with NumPy and "
+        "shapely, without the engine: whether each pose is where the drive takes the object under its control, whether "
+        "limits of speed and acceleration were kept, which contacts there were at the ends of steps and within them "
+        "(along the constant twist of each step; the bound of the subdivision is printed), who arrived, the outcome, "
+        "path length, mean speed and smallest clearance. It says equal, or names object, step, both values and the "
+        "tolerance; contacts within 1e-7 m of touching are listed, not decided. The record has what that needs: "
+        "outlines as drawn, limits, goals, thresholds, the cells of the map, contacts with their times.",
+        "irsim run hall.yaml --seed 3 --record && irsim audit last",
+        ("irsim audit", "verify a run", "check a recorded run", "tampered record", "referee", "record-incomplete"),
+    ),
     "imports": Guide(
         "maps and people of other programs as scenarios",
         "`irsim map import FILE -o map.yaml` makes an occupancy grid and a scenario of a mesh (.glb, .gltf, .obj, "
