@@ -26,7 +26,7 @@ class AuditCheck(Result):
     differences: int
     """Number of them that differ."""
     note: str = ""
-    """What was left out, and why; else empty."""
+    """The parts that were left out, and why; else empty."""
 
 
 class AuditFinding(Result):
@@ -47,15 +47,15 @@ class AuditFinding(Result):
     tolerance: float | None = None
     """Difference up to which the two count as equal, in the unit of the values."""
     message: str
-    """What differs, in one sentence."""
+    """The difference in one sentence."""
     path: str | None = None
     """The file, or the place in it, where it stands; None for the run itself."""
     fix: str | None = None
-    """What to do about it."""
+    """The remedy."""
 
 
 class NearContact(Result):
-    """A contact of which nobody can say from the record whether it took place: the two touch within the tolerance."""
+    """A contact that the record does not decide, because the two touch within the tolerance."""
 
     object: str
     """Name of the first object."""
@@ -70,7 +70,7 @@ class NearContact(Result):
 
 
 class AuditedRobot(Result):
-    """What the audit has computed for one robot."""
+    """The numbers that the audit has computed for one robot."""
 
     name: str
     """Name."""
@@ -108,7 +108,7 @@ class RunAudit(Result):
     objects: int = 0
     """Number of objects."""
     checks: list[AuditCheck] = Field(default_factory=list)
-    """What was compared."""
+    """The kinds of comparisons."""
     findings: list[AuditFinding] = Field(default_factory=list)
     """Where the record differs, the first 50."""
     finding_count: int = 0
@@ -122,7 +122,7 @@ class RunAudit(Result):
     unseen_depth: float = 0.0
     """How deep two bodies can have overlapped within a step without being seen [m]: the bound of the subdivision."""
     robots: list[AuditedRobot] = Field(default_factory=list)
-    """What was computed for each robot."""
+    """The computed numbers of each robot."""
     version: str = ""
     """Version of irsim that recorded the run."""
 

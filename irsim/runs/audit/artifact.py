@@ -41,7 +41,7 @@ class Body:
     Attributes:
         facts: Its own facts: name, goals, outline.
         options: Facts that it may share with others: drive, limits of arrival, what may be passed.
-        drawn: What the seed may have decided: outline and limits.
+        drawn: Outline and limits, which the seed may have decided.
     """
 
     facts: ObjectFacts
@@ -217,12 +217,12 @@ def _bodies(data: Any, meta: Meta, folder: Path) -> tuple[WorldFacts, list[Body]
             raise unreadable(f"'{name}' of run {folder.name} has been changed: see its key 'objects.{row}.options'")
         bodies.append(Body(facts, options[facts.options], drawn))
     if [body.name for body in bodies] != meta.names or corners > _MAX_CORNERS or len(set(meta.names)) < len(bodies):
-        raise unreadable(f"'{name}' of run {folder.name} has been changed: its objects are not those of run.json")
+        raise unreadable(f"'{name}' of run {folder.name} has been changed: run.json has other objects")
     return world, bodies
 
 
 def _row(built: dict[str, Any], row: int) -> dict[str, Any]:
-    """What was built of one object."""
+    """The values of one object."""
     return {key: values[row] for key, values in built.items() if isinstance(values, list) and row < len(values)}
 
 

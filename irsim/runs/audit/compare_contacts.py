@@ -1,4 +1,4 @@
-"""Compares the contacts that a run has recorded with those that its poses and outlines give."""
+"""Compares the recorded contacts of a run with the contacts that follow from its poses and outlines."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class _Comparison:
                 self.hits[met.step, one] = "yes" if "yes" in (touch, known) else "perhaps"
 
     def _begins(self, met: Encounter, recorded: bool) -> Touch:
-        """Whether a collision begins; of two that part in a step nobody looks whether they meet again in it."""
+        """Whether a collision begins; two that part in a step are not followed until they meet again in it."""
         if met.before == "yes":
             again = recorded and met.after == "no" and self.is_swept(met.one, met.other)
             return "perhaps" if again else "no"
@@ -111,15 +111,15 @@ class _Comparison:
         if event.kind == "collision" and not self.is_swept(met.one, met.other):
             return
         share, row = event.time / self.artifact.step_time - (met.step - 1), met.step - 1 - self.artifact.first
-        found = float(met.time or 0.0)
-        early = share - found
+        first = float(met.time or 0.0)
+        early = share - first
         late = not 0.0 <= share <= 1.0 + _TIME_SHARE or (
             self.encounters.gap_at(row, met.one, met.other, share) > 2 * TOLERANCE_M
         )
         if not late and early > _TIME_SHARE:
-            late = self.encounters.overlap_at(row, met.one, met.other, 0.5 * (found + share))
+            late = self.encounters.overlap_at(row, met.one, met.other, 0.5 * (first + share))
         if late or early < -_TIME_SHARE:
-            time = (met.step - 1 + found) * self.artifact.step_time
+            time = (met.step - 1 + first) * self.artifact.step_time
             names = (self.bodies[met.one].name, self.bodies[met.other].name)
             self.report.differ(
                 _CODE,

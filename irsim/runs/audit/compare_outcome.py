@@ -77,7 +77,7 @@ def _differ(report: Report, body: Body, step: int, what: str, distance: float, t
 
 
 def _compare_goals(artifact: Artifact, body: Body, row: int, report: Report) -> None:
-    """Whether the goals of the trace are those of the scenario; objects that loop or wander have others, too."""
+    """Compare the goals of the trace with the goals in the scenario; objects that loop or wander have further ones."""
     options = artifact.meta.options
     if body.endless or not body.facts.goals or options.get("bridges") or options.get("imports"):
         return
@@ -88,7 +88,7 @@ def _compare_goals(artifact: Artifact, body: Body, row: int, report: Report) -> 
     if strange.any():
         place = int(strange.argmax())
         step, name = artifact.first + place, body.name
-        what = f"the goal of '{name}' in step {step} is none that the scenario gives it"
+        what = f"the scenario does not give '{name}' its goal of step {step}"
         report.differ("audit-arrival", what, object=name, step=step, recorded=goal[place].tolist(),
                       recomputed=given[0].tolist(), tolerance=_ROUNDING)  # fmt: skip
 
@@ -111,7 +111,7 @@ def _distances(body: Body, pose: Floats, goal: Floats) -> Floats:
 
 
 def audited_robots(artifact: Artifact, shapes: Sequence[Shape]) -> list[AuditedRobot]:
-    """What each robot did, from poses, flags and events."""
+    """The numbers of each robot, from poses, flags and events."""
     passable = {body.name for body in artifact.bodies if body.options.unobstructed}
     hits, between = list[EventFacts](), Counter[str]()
     for event in artifact.events:

@@ -123,15 +123,15 @@ class Encounters:
 
     def _near(self, boxes: Floats) -> list[tuple[int, int, int]]:
         """Step, and the two bodies whose boxes come near each other in it."""
-        found = list[tuple[int, int, int]]()
+        pairs = list[tuple[int, int, int]]()
         moving = [row for row, static in enumerate(self._static) if not static]
         low, high = boxes[..., :2] - 2 * TOLERANCE_M, boxes[..., 2:] + 2 * TOLERANCE_M
         for one in moving:
             meets = (low[:, one, None] <= high).all(axis=-1) & (low <= high[:, one, None]).all(axis=-1)
             for step, other in np.argwhere(meets).tolist():
                 if other != one and (self._static[other] or other > one):
-                    found.append((step, min(one, other), max(one, other)))
-        return sorted(found)
+                    pairs.append((step, min(one, other), max(one, other)))
+        return sorted(pairs)
 
     def _is_there(self, row: int, body: int) -> bool:
         return bool(self._shapes[body].is_map or not np.isnan(self._artifact.pose[row, body, 0]))

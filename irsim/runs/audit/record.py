@@ -42,7 +42,7 @@ class WorldFacts(BaseModel):
 
 
 class Options(BaseModel):
-    """What objects may share."""
+    """Facts that objects may share."""
 
     role: Literal["robot", "obstacle"]
     static: bool
@@ -61,7 +61,7 @@ class Options(BaseModel):
 
 
 class ObjectFacts(BaseModel):
-    """What each object has of its own."""
+    """Facts of one object."""
 
     name: Name
     state: Annotated[list[float | None], Field(max_length=16)]
@@ -79,7 +79,7 @@ class PartFacts(BaseModel):
 
 
 class Drawn(BaseModel):
-    """What the seed may have decided."""
+    """Facts that the seed may have decided."""
 
     outlines: list[PartFacts]
     vel_min: Annotated[list[Limit], Field(min_length=3, max_length=3)]

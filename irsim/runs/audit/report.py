@@ -15,10 +15,10 @@ MAX_LISTED = 50
 
 
 class Report:
-    """What an audit found so far.
+    """The results of an audit so far.
 
     Attributes:
-        checks: What was compared, in order.
+        checks: The comparisons, in order.
         findings: The first differences.
         count: Number of differences.
         near: The first contacts within the tolerance.
@@ -84,7 +84,7 @@ class Report:
             )
 
     def is_near(self, object: str, partner: str, step: int, gap: float, note: str) -> None:
-        """Add a contact that lies within the tolerance, so that nobody can say whether the two touched."""
+        """Add a contact that lies within the tolerance, which therefore stays undecided."""
         self.near_count += 1
         if len(self.near) < MAX_LISTED:
             self.near.append(

@@ -164,7 +164,7 @@ def _overlaps(a: Placed, b: Placed) -> bool:
 def signed_gap(some: Sequence[Placed], others: Sequence[Placed]) -> float:
     """Distance between two bodies [m], below 0 the depth of an overlap, NaN where that depth is not defined here.
 
-    The depth is that of the deepest corner of one outline in the other one, or of a circle in an outline. A room is
+    The depth of an overlap is how deep a corner of one outline, or a circle, lies in the other outline. A room is
     solid outside. Depths in a map are not computed.
     """
     return min((_signed(a, b) for a in some for b in others), default=math.inf)
@@ -181,8 +181,8 @@ def _signed(a: Placed, b: Placed) -> float:
         away = float(shapely.distance(_rim(a), b.geometry))
         return (-away if inside else away) - b.radius
     depths = [_depth(a, b), _depth(b, a)]
-    found = [depth for depth in depths if depth is not None]
-    return -max(found) if found else distance
+    known = [depth for depth in depths if depth is not None]
+    return -max(known) if known else distance
 
 
 def _depth(of: Placed, into: Placed) -> float | None:

@@ -102,9 +102,9 @@ def test_a_car_moves_as_its_wheelbase_says(record: Callable[..., Path]) -> None:
 def test_a_moved_pose_is_found_at_its_step(record: Callable[..., Path]) -> None:
     folder = record(discs())
     change_piece(folder, lambda about, arrays: np.add.at(arrays["pose"], (2, 0, 1), 1e-5))
-    found = [finding for finding in audited(folder).findings if finding.code == "audit-motion"]
-    assert [(finding.object, finding.step) for finding in found] == [("left", 2), ("left", 3)]
-    assert found[0].tolerance == pytest.approx(0.0, abs=1e-6)
+    moved = [finding for finding in audited(folder).findings if finding.code == "audit-motion"]
+    assert [(finding.object, finding.step) for finding in moved] == [("left", 2), ("left", 3)]
+    assert moved[0].tolerance == pytest.approx(0.0, abs=1e-6)
 
 
 def test_a_changed_outcome_is_found(record: Callable[..., Path]) -> None:
