@@ -60,6 +60,9 @@ def _show(run: RunAudit, out: Console) -> None:
         count = f"{check.compared} values" if check.compared else ""
         odd = f", {check.differences} differ" if check.differences else ""
         out.print(f"  {check.name}: {check.status.replace('_', ' ')} {count}{odd}{note}".rstrip(), soft_wrap=True)
+    for problem in run.problems:
+        fix = f"; fix: {clean(problem.fix, 300)}" if problem.fix else ""
+        out.print(f"  {problem.code}: {clean(problem.path, 200)}{fix}", soft_wrap=True)
     for finding in run.findings[:MAX_ROWS]:
         print_finding(finding, out)
     if run.finding_count > MAX_ROWS:
@@ -96,9 +99,7 @@ def print_finding(finding: AuditFinding, out: Console) -> None:
     if finding.recorded is not None or finding.recomputed is not None:
         values = f": recorded {_value(finding.recorded)}, recomputed {_value(finding.recomputed)}"
         values += "" if finding.tolerance is None else f", tolerance {finding.tolerance:.2g}"
-    where = f"{clean(finding.path, 200)}: " if finding.path else ""
-    fix = f"; {clean(finding.fix, 300)}" if finding.fix else ""
-    out.print(f"  {finding.code}: {where}{clean(finding.message, 400)}{values}{fix}", soft_wrap=True)
+    out.print(f"  {finding.code}: {clean(finding.message, 400)}{values}", soft_wrap=True)
 
 
 def _value(value: object) -> str:

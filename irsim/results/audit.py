@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from irsim.results.base import Result
+from irsim.results.findings import Finding
 
 __all__ = ["AuditCheck", "AuditFinding", "AuditResult", "AuditedRobot", "NearContact", "RunAudit"]
 
@@ -48,10 +49,6 @@ class AuditFinding(Result):
     """Difference up to which the two count as equal, in the unit of the values."""
     message: str
     """The difference in one sentence."""
-    path: str | None = None
-    """The file, or the place in it, where it stands; None for the run itself."""
-    fix: str | None = None
-    """The remedy."""
 
 
 class NearContact(Result):
@@ -98,7 +95,7 @@ class RunAudit(Result):
     run: str
     """The run, as it was named."""
     equal: bool
-    """Whether everything that was compared is equal."""
+    """Whether the record could be read, and everything that was compared is equal."""
     summary: str
     """One sentence."""
     outcome: Literal["success", "collision", "timeout"] | None = None
@@ -109,6 +106,8 @@ class RunAudit(Result):
     """Number of objects."""
     checks: list[AuditCheck] = Field(default_factory=list)
     """The kinds of comparisons."""
+    problems: list[Finding] = Field(default_factory=list)
+    """Why the record cannot be read; empty if it can."""
     findings: list[AuditFinding] = Field(default_factory=list)
     """Where the record differs, the first 50."""
     finding_count: int = 0

@@ -56,10 +56,10 @@ def unpack_cells(content: bytes) -> tuple[NDArray[np.bool_], Floats, Floats]:
         or not (shape <= _MAX_CELLS).all()
         or int(shape[0]) * int(shape[1]) > _MAX_CELLS
     ):
-        raise ContentError("its arrays are not those of a map")
+        raise ContentError("its arrays have other shapes than a map")
     count = int(shape[0]) * int(shape[1])
     if bits.dtype != np.uint8 or len(bits) != -(-count // 8):
         raise ContentError("its bits do not fit its shape")
     if not (np.isfinite(origin).all() and np.isfinite(cell).all() and (cell > 0).all()):
-        raise ContentError("its corner or cells are not those of a map")
+        raise ContentError("its corner or cells are impossible")
     return np.unpackbits(bits, count=count).reshape(int(shape[0]), int(shape[1])).astype(bool), origin, cell

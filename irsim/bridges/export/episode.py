@@ -28,7 +28,7 @@ CHOICES = ("movers", "robots", "people", "all")
 _BLOCK_NUMBERS = 2_000_000
 """Number of values of one block, which bounds the memory of an export."""
 _WORLD_FACTS = ("collision_mode", "contacts", "integration", "after_arrival", "step_time", "time_limit")
-"""Keys of the world without which nobody can judge contacts and arrivals."""
+"""Keys of the world that decide what counts as a contact and as an arrival."""
 _MAX_BLOCK_ROWS = 65_536
 
 

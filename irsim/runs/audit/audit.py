@@ -10,7 +10,8 @@ import numpy as np
 from shapely.errors import ShapelyError
 
 from irsim.common.text import clean
-from irsim.results.audit import AuditFinding, AuditResult, RunAudit
+from irsim.results.audit import AuditResult, RunAudit
+from irsim.results.findings import Finding
 from irsim.runs.audit.artifact import read_artifact
 from irsim.runs.audit.compare_contacts import compare_contacts
 from irsim.runs.audit.compare_motion import compare_limits, compare_motion
@@ -51,8 +52,9 @@ def _safely(run: str | Path) -> RunAudit:
         code, fix = "unreadable-run", _RECORD_AGAIN
         message = f"nothing can be computed from its numbers ({clean(str(error) or type(error).__name__, 100)})"
     name = clean(str(run), 200)
-    finding = AuditFinding(code=code, message=clean(message, 400), path=name, fix=fix)
-    return RunAudit(run=name, equal=False, summary=f"{name}: {finding.message}", findings=[finding], finding_count=1)
+    message = clean(message, 400)
+    problem = Finding(code=code, severity="error", path=name, line=None, column=None, message=message, fix=fix)
+    return RunAudit(run=name, equal=False, summary=f"{name}: {message}", problems=[problem])
 
 
 def audit_run(run: str | Path) -> RunAudit:

@@ -49,8 +49,8 @@ def audited(run: str | Path) -> RunAudit:
 
 
 def codes(result: RunAudit) -> set[str]:
-    """Codes of all findings."""
-    return {finding.code for finding in result.findings}
+    """Codes of all findings and problems."""
+    return {finding.code for finding in result.findings} | {problem.code for problem in result.problems}
 
 
 def change_json(path: Path, change: Callable[[Any], None]) -> None:

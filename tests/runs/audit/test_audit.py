@@ -189,9 +189,9 @@ def test_a_record_of_an_older_version_says_what_it_lacks(record: Callable[..., P
     folder = record(discs())
     change_json(folder / "run.json", lambda data: data.update(resolved=None))
     change_json(folder / "resolved.json", lambda data: data.pop("built"))
-    [finding] = audited(folder).findings
-    assert finding.code == "record-incomplete"
-    assert finding.fix
+    [problem] = audited(folder).problems
+    assert problem.code == "record-incomplete"
+    assert problem.fix
 
 
 def test_a_run_that_ends_early_is_found(record: Callable[..., Path]) -> None:
