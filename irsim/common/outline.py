@@ -22,6 +22,7 @@ __all__ = [
     "Polygon",
     "outline",
     "part_of",
+    "plain_outlines",
     "points_of",
     "triangles_of",
 ]
@@ -154,6 +155,20 @@ def outline(state: core.State, row: int, *, world_frame: bool = False) -> Outlin
             frame.
     """
     return Outline(tuple(_part(state, row, part, kind, world_frame) for part, kind in enumerate(state.parts(row))))
+
+
+def plain_outlines(state: core.State, rows: int) -> list[list[dict[str, Any]]]:
+    """The parts of the first objects of a state as plain data, body frame [m]; a map has the corners of its box."""
+    return [[_plain(part) for part in outline(state, row).parts] for row in range(rows)]
+
+
+def _plain(part: Part) -> dict[str, Any]:
+    if isinstance(part, Circle):
+        return {"kind": "circle", "center": part.center, "radius": part.radius}
+    kind = "polygon" if isinstance(part, Polygon) else "cells"
+    if isinstance(part, Line):
+        kind = "room" if part.closed else "line"
+    return {"kind": kind, "vertices": points_of(part).tolist()}
 
 
 def points_of(part: Polygon | Line | Cells) -> Floats:

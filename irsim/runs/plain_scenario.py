@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
-from irsim.common.outline import Cells, Circle, Line, Part, outline, points_of
 from irsim.runs.files import record_json
 from irsim.scenario.resolve.resolved import ObjectRecord
 
@@ -23,7 +23,7 @@ _LIKE = tuple(field.name for field in fields(ObjectRecord) if field.name not in 
 _each, _like = attrgetter(*_EACH), attrgetter(*_LIKE)
 
 
-def plain_scenario(simulation: Simulation) -> bytes:
+def plain_scenario(simulation: Simulation, outlines: Sequence[Any]) -> bytes:
     """World and objects with all defaults, and the initial pose of each object, as JSON.
 
     Options that successive objects share are stored once, in ``options``; each object has the index of its options.
@@ -31,6 +31,10 @@ def plain_scenario(simulation: Simulation) -> bytes:
     decided, one entry per object: ``outlines`` (parts in the body frame [m]; a map has only its box, as its cells are
     in a file of their own), the limits ``vel_min``, ``vel_max`` and ``acce`` of its controls, and ``start_step``, until
     which it waits.
+
+    Args:
+        simulation: The simulation, at its start.
+        outlines: The outlines of its objects, from :func:`irsim.common.outline.plain_outlines`.
     """
     scenario, goals = simulation.scenario, simulation.state.goals
     objects, options, state = list[dict[str, Any]](), list[dict[str, Any]](), simulation.state
@@ -52,7 +56,7 @@ def plain_scenario(simulation: Simulation) -> bytes:
         "objects": objects,
         "options": options,
         "built": {
-            "outlines": [[_part(part) for part in outline(state, row).parts] for row in range(len(objects))],
+            "outlines": outlines,
             "vel_min": state.vel_min.tolist(),
             "vel_max": state.vel_max.tolist(),
             "acce": state.acce.tolist(),
@@ -74,16 +78,6 @@ def with_options(data: Any) -> dict[str, Any]:
     for item in objects:
         del item["options"]
     return {**{key: value for key, value in data.items() if key != "options"}, "objects": objects}
-
-
-def _part(part: Part) -> dict[str, Any]:
-    """A part of an outline as plain data."""
-    if isinstance(part, Circle):
-        return {"kind": "circle", "center": part.center, "radius": part.radius}
-    kind = "cells" if isinstance(part, Cells) else "polygon"
-    if isinstance(part, Line):
-        kind = "room" if part.closed else "line"
-    return {"kind": kind, "vertices": points_of(part).tolist()}
 
 
 def _values(model: Any) -> Any:

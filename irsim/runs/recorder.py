@@ -22,6 +22,7 @@ import irsim._core as core
 from irsim.common.files import Buffer
 from irsim.common.hashing import digest
 from irsim.common.installed import version
+from irsim.common.outline import plain_outlines
 from irsim.runs.cells import CELLS_FILE, pack_cells
 from irsim.runs.chunks import PieceWriter, pack_chunk
 from irsim.runs.files import DIGEST_LENGTH, Claim, RunError, claim, create_file, record_json, replace_file
@@ -142,7 +143,8 @@ class Recorder:
         }
         try:
             self._claim = claim(self._path(SCENARIO_FILE), _text_of(simulation).encode())
-            resolved = plain_scenario(simulation)
+            outlines = plain_outlines(simulation.state, len(self._meta["names"]))
+            resolved = plain_scenario(simulation, outlines)
             create_file(self._path("resolved.json"), resolved)
             self._meta["resolved"] = digest(resolved)[:DIGEST_LENGTH]
             self._meta["maps"] = self._copy_maps()
@@ -173,7 +175,7 @@ class Recorder:
     def _keep_cells(self) -> None:
         """Write the occupied cells of the map, from which contacts with it can be checked without its file."""
         simulation = self._simulation
-        row = next((row for row, record in enumerate(simulation.scenario.objects) if record.is_map), None)
+        row = next((row for row, record in enumerate(simulation.scenario.objects) if record.shape.name == "map"), None)
         grid = None if row is None else simulation.state.cells(row)
         if grid is None or math.prod(grid.shape) > 8 * _MAX_MAP_BYTES:
             return

@@ -185,9 +185,9 @@ def read_artifact(run: str | Path) -> Artifact:
 def _parsed(model: Any, data: Any, folder: Path, name: str) -> Any:
     try:
         return model.model_validate(data)
-    except ValidationError as error:
-        place = ".".join(str(part) for part in error.errors()[0]["loc"][:4])
-        raise unreadable(f"'{name}' of run {folder.name} has been changed: see its key '{place[:80]}'") from None
+    except ValidationError:
+        what = f"'{name}' of run {folder.name} has been changed: it has other keys or values than irsim writes"
+        raise unreadable(what) from None
 
 
 def _result(folder: Path) -> ResultFacts | None:
@@ -246,7 +246,8 @@ def _read_piece(path: Path, count: int) -> dict[str, Any]:
             arrays = {name: read_array(archive, archive.getinfo(f"{name}.npy"), ("f8", "f4", "u1")) for name in _ARRAYS}
         return _rows(about, arrays, count)
     except (ContentError, ValidationError, ValueError, KeyError, IndexError, OSError) as error:
-        what = error.errors()[0]["msg"] if isinstance(error, ValidationError) else str(error)[:200]
+        odd = isinstance(error, ValidationError)
+        what = "piece.json has other keys or values than irsim writes" if odd else str(error)[:200]
         raise unreadable(f"'{path.name}' of run {path.parent.name} has been changed: {what}") from None
 
 
