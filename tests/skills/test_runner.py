@@ -287,10 +287,11 @@ def test_the_commands_about_recorded_pedestrians_work(tmp_path: Path, monkeypatc
     monkeypatch.chdir(tmp_path)
     (tmp_path / "obsmat.txt").write_text(crowds.obsmat())
     (tmp_path / "crowd.vsp").write_text(crowds.vsp())
+    (tmp_path / "walk.txt").write_text(crowds.square())
     np.savetxt(tmp_path / "H.txt", np.array([[0.02, 0, -7.2], [0, -0.02, 5.76], [0, 0, 1]]))
     (tmp_path / "hall.yaml").write_text("world: {width: 20, height: 16}\nrobot: [{kinematics: {name: diff}}]\n")
     told = commands(BRIDGE_PAGES / "pedestrians.md")
-    assert len(told) == 11
+    assert len(told) == 12
     for _, *words in told:
         done = CliRunner().invoke(app, [*words, *(["--seeds", "2"] if words[0] == "benchmark" else [])])
         assert done.exit_code == 0, (words, done.output)

@@ -7,13 +7,13 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
-from irsim.components.options import BehaviorOptions
+from irsim.components.behaviors._people import FittedOptions
 from irsim.options.knowledge import Fact
 from irsim.options.registry import BEHAVIORS
 from irsim.options.units import Count, Degrees, Fraction, Meters, MetersPerSecond, Seconds
 
 
-class Orca(BehaviorOptions):
+class Orca(FittedOptions):
     """Take half of the smallest change of velocity that avoids every collision, and leave the rest to the other.
 
     It makes the whole change for moving objects that run no kind of orca, and never drives into static ones.
@@ -35,19 +35,19 @@ class Orca(BehaviorOptions):
     maxNeighbors: Count = 10
     """Moving objects considered, nearest first; walls and static circles do not count."""
     timeHorizon: Annotated[Seconds, Field(gt=0)] = 20.0
-    """Time horizon for collisions with moving objects. A long one makes crowds slow."""
+    """Time horizon for moving objects. A long one makes crowds slow."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 10.0
-    """The same for walls and static circles. Near walls set 1 to 2 s: with the default, robots are slow in corridors
+    """The same for walls and static circles. Near walls set 1 to 2 s: the default makes robots slow in corridors
     and at goals near walls."""
     safe_radius: Annotated[Meters, Field(ge=0)] = 0.1
-    """Margin added to the radius of the object itself."""
+    """Margin added to its own radius."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
     """Largest speed; null is what the object can reach in every direction, also the upper limit."""
     responsibility: Annotated[Fraction, Field(gt=0)] | None = None
     """Share of that change of velocity that it makes for a moving object; null is half for one that runs a kind of orca
     and sees it, else all. Most other programs always take 0.5."""
     approach_time: Annotated[Seconds, Field(gt=0)] | None = None
-    """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
+    """Slow down at the goal: the wanted speed is at most the distance to it divided by this time; null is full
     speed."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
     """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity

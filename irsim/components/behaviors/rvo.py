@@ -33,7 +33,7 @@ class Rvo(BehaviorOptions):
     vxmax: Annotated[MetersPerSecond, Field(gt=0)] = 1.5
     """Largest speed along world x that is considered."""
     vymax: Annotated[MetersPerSecond, Field(gt=0)] = 1.5
-    """Largest speed along world y that is considered."""
+    """The same along world y."""
     acce: Annotated[MetersPerSecond, Field(gt=0)] = 1.0
     """Largest change of velocity in one step: half the width of the search window, not multiplied by the period."""
     factor: Annotated[Number, Field(ge=0)] = 1.0

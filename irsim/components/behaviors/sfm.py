@@ -7,13 +7,13 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
-from irsim.components.options import BehaviorOptions
+from irsim.components.behaviors._people import FittedOptions
 from irsim.options.knowledge import Fact
 from irsim.options.registry import BEHAVIORS
 from irsim.options.units import Degrees, Integer, Meters, MetersPerSecond, Number, Seconds
 
 
-class Sfm(BehaviorOptions):
+class Sfm(FittedOptions):
     """Walk like a pedestrian: pulled to the goal, pushed away by objects and walls (social force model).
 
     It starts from rest and does not brake at its goal: it swings back, so use a `goal_threshold` of
@@ -44,9 +44,9 @@ class Sfm(BehaviorOptions):
     """Weight of the push away from walls."""
     sigma_obstacle: Annotated[Meters, Field(gt=0)] = 0.8
     """Reach of the push away from walls. In a corridor use about a twentieth of its width (0.15 m for 3 m): more pushes
-    people from both directions into the middle, where they block each other."""
+    both directions into the middle, where they block each other."""
     lambda_importance: Number = 2.0
-    """Weight of the relative velocity, compared with the relative position, in the interaction of two objects."""
+    """Weight of the relative velocity in an interaction, compared with the relative position."""
     gamma: Annotated[Number, Field(gt=0)] = 0.35
     """Reach of the interaction, per length of the interaction vector."""
     n_angular: Number = 2.0
@@ -54,21 +54,21 @@ class Sfm(BehaviorOptions):
     n_velocity: Number = 3.0
     """Sharpness of the braking part of the interaction."""
     safety_radius: Annotated[Meters, Field(ge=0)] = 0.0
-    """Margin added to the radius of each object in the interaction."""
+    """Margin added to each radius in the interaction."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
     """As in `orca`: null breaks ties only, also with an object straight ahead; 0 leaves them."""
     keep_gap: bool | None = None
     """As in `rvo`."""
     social_groups: list[list[Annotated[Integer, Field(ge=0)]]] | None = None
-    """As `group_behavior`: lists of the indices of members that walk together; each index at most once."""
+    """As `group_behavior`: lists of indices of members that walk together, each at most once."""
     force_factor_coherence: Number = 2.0
-    """In a group: weight of the pull to the middle of the social group."""
+    """In a group: weight of the pull to its middle."""
     force_factor_group_repulsion: Number = 1.0
-    """In a group: weight of the push away from members of the social group that are too close."""
+    """In a group: weight of the push from members that are too close."""
     group_repulsion_threshold: Annotated[Meters, Field(ge=0)] | None = None
     """In a group: distance below which members push each other; null is the sum of their radii."""
     force_factor_gaze: Number = 3.0
-    """In a group: weight of turning to keep the social group in view."""
+    """In a group: weight of turning to see the others."""
     gaze_vision_angle: Annotated[Degrees, Field(gt=0, le=180)] = 90.0
     """In a group: half the angle that a member sees without turning."""
 
