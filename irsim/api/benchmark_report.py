@@ -19,6 +19,7 @@ from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.report.page import Shown, page
 from irsim.benchmarks.report.rows import policy_labels, worst_episodes
 from irsim.benchmarks.report.table import MISSING, TABLE, has_tables, write_table
+from irsim.benchmarks.roles import shared_with
 from irsim.benchmarks.stored import read_plan
 from irsim.common.files import code_of, write_atomically
 from irsim.diagnostics.errors import ScenarioError
@@ -85,7 +86,8 @@ def write_report(result: BenchmarkResult, folder: Path) -> Report:
 def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: BenchmarkResult, folder: Path) -> Shown:
     """An episode as a picture, and its replay."""
     document = scenario.document()
-    policy = next(policy for policy in plan.opened() if label_of(policy) == one.behavior)
+    compared = next(policy for policy in plan.opened() if label_of(policy) == one.behavior)
+    policy = shared_with(compared, plan.parts().get(scenario.name, {}))
     job = Job(
         text=scenario.text, path=document.path, steps=plan.steps, strict=plan.strict, imports=tuple(plan.imports),
         limits=tuple(vars(DEFAULT_LIMITS).items()), perturb=tuple(plan.perturb), **job_keys(policy),

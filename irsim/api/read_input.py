@@ -117,10 +117,11 @@ def opened_policy(
     if policy is not None and behavior is not None:
         raise InputError("policy and behavior are two names of one argument", "give only policy")
     given, where = (behavior, "behavior") if policy is None else (policy, "policy")
-    if given is None:
+    driver = policy_of_suite(path, AS_WRITTEN if given is None else given)
+    if given is None and driver == AS_WRITTEN:
         return None, None
     try:
-        opened = open_policy(policy_of_suite(path, given), root=None if limits is None else limits.root)
+        opened = open_policy(driver, root=None if limits is None else limits.root)
     except InputError as error:
         error.where = where
         raise

@@ -29,6 +29,7 @@ from irsim.benchmarks.policies import (
     opened_policies,
 )
 from irsim.benchmarks.pool import MAX_GROUP, cores, run_tasks
+from irsim.benchmarks.roles import shared_with
 from irsim.benchmarks.seeds import seeds_from, seeds_text
 from irsim.benchmarks.timing import time_behavior, timing_report
 from irsim.common.arguments import as_given, check_whole_number
@@ -64,7 +65,7 @@ _SEEDS_PER_TURN = {False: 5, True: MAX_GROUP}
 or where policies are networks as many as are run together."""
 _COPIED = (
     *("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures"),
-    *("human_contacts", "left", "jumped", "lost", "zones"),
+    *("human_contacts", "left", "jumped", "lost", "zones", "roles"),
 )
 """Keys of the result of an episode that its row repeats."""
 
@@ -88,6 +89,7 @@ def benchmark(
     resume: bool = False,
     until: EpisodeUntil = "done",
     groups: Mapping[str, Sequence[str]] | None = None,
+    parts: Mapping[str, Mapping[str, Policy | None]] | None = None,
     timing: dict[str, Any] | None = None,
 ) -> BenchmarkResult:
     """Run every scenario under every policy with every seed, and compare.
@@ -125,6 +127,8 @@ def benchmark(
         until: ``done`` ends an episode when every robot has arrived or stopped, ``first_collision`` also when one
             collides.
         groups: Name of a group → its scenarios, which are summarised together as ``(all NAME)``.
+        parts: Name of a scenario → name or tag of its robots → the policy that drives them, whatever policy is
+            compared, or None for the compared one. The result then has metrics by role.
         timing: Receives the wall-clock times of decisions, see :func:`irsim.benchmarks.timing.timing_report`.
 
     Raises:
@@ -168,7 +172,8 @@ def benchmark(
         if texts:
             changes[name] = perturbed_message(scenario)
         settled[name], limits_under = scenario, dict[str, dict[str, Limit]]()
-        for number, (policy, behavior) in enumerate(zip(opened, wanted, strict=True)):
+        for number, (compared, behavior) in enumerate(zip(opened, wanted, strict=True)):
+            policy = shared_with(compared, (parts or {}).get(name, {}))
             if policy.stochastic and "policy" not in chances[name]:
                 chances[name].append("policy")
             job = Job(
@@ -225,8 +230,9 @@ def benchmark(
 
     def row(number: int, result: Mapping[str, Any]) -> EpisodeRow:
         name, behavior, task = plan[number]
-        metrics = {key: None if math.isnan(value) else value for key, value in result["metrics"].items()}
+        metrics = _without_nan(result["metrics"])
         copied = {key: result[key] for key in _COPIED}
+        copied["roles"] = {role: _without_nan(values) for role, values in result["roles"].items()}
         return EpisodeRow(scenario=name, behavior=behavior, seed=task.seed, metrics=metrics, **copied)
 
     known = dict(Log.known(log, head)) if log is not None and resume else {}
@@ -247,6 +253,10 @@ def benchmark(
         timing.update(_timing(opened, plan, dict(zip(turns, results, strict=True))))
     episodes = known | {number: row(number, result) for number, result in zip(turns, results, strict=True)}
     return with_episodes(head, [episodes[number] for number in range(len(plan))])
+
+
+def _without_nan(values: Mapping[str, float]) -> dict[str, float | None]:
+    return {key: None if math.isnan(value) else value for key, value in values.items()}
 
 
 def _after(progress: Progress | None, done: int) -> Progress | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from irsim.benchmarks.policies import open_again
+from irsim.benchmarks.roles import role_metrics
 from irsim.diagnostics.errors import PlacementError, PolicyLostError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of
@@ -19,7 +20,7 @@ from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.progress import UNREACHABLE
 from irsim.navigation.geodesic import Geodesics
-from irsim.policies.driver import PolicyDriver, driver_of
+from irsim.policies.driver import PolicyDriver, drivers_of
 from irsim.policies.policy import Policy
 from irsim.results.benchmark import CROWDED
 from irsim.results.run import EpisodeUntil
@@ -69,6 +70,7 @@ _NOTHING: Mapping[str, Any] = MappingProxyType(
         "jumped": [],
         "lost": None,
         "zones": {},
+        "roles": {},
     }
 )
 """Result of an episode that does not take place, without its outcome and metrics."""
@@ -191,17 +193,18 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
         horizon, _ = horizon_of(env.simulation, job.steps, Limits(**dict(job.limits)))
     except PlacementError:
         return crowded()
-    driver = driver_of(env.simulation)
-    trace, lost = _recorded(env.simulation, horizon, driver)
-    timed = {} if driver is None else {"decisions": list(zip(driver.seconds, driver.decided, strict=True))}
+    drivers = drivers_of(env.simulation)
+    trace, lost = _recorded(env.simulation, horizon, drivers)
+    decisions = [pair for one in drivers for pair in zip(one.seconds, one.decided, strict=True)]
+    timed = {"decisions": decisions} if drivers else {}
     result = measure(task, Episode(trace, env.events, horizon, lost=lost), env, env.simulation, ways) | timed
     env.end(ending_time=0.0)
     return result
 
 
-def _recorded(simulation: Simulation, horizon: int, driver: PolicyDriver | None) -> tuple[Trace, str | None]:
+def _recorded(simulation: Simulation, horizon: int, drivers: Sequence[PolicyDriver]) -> tuple[Trace, str | None]:
     """The trace of an episode, and why its policy could not go on; None if it could."""
-    if driver is None or not driver.policy.may_be_lost:
+    if not any(one.policy.may_be_lost for one in drivers):
         return record(simulation, horizon), None
     rows = [present_row(simulation)]
     try:
@@ -253,7 +256,8 @@ def measure(
         ``outcome``, ``steps``, ``sim_time``, ``time_limit``, ``robots``, ``unreachable`` (number of robots without a
         path to their goal), ``failures`` (outcome of robots without success, by name), ``human_contacts`` (number of
         contacts between people), ``left`` and ``jumped`` (objects that left the world or jumped over their goal), and
-        ``metrics`` of the episode by key (NaN where undefined), and ``zones``: metrics of each zone by its name.
+        ``metrics`` of the episode by key (NaN where undefined), ``zones``: metrics of each zone by its name, and
+        ``roles``: see :func:`irsim.benchmarks.roles.role_metrics`.
     """
     trace, events, horizon, records = episode.trace, episode.events, episode.horizon, scene.scenario.objects
     hits = _first_hits(scene, events) if task.job.until == "first_collision" else {}
@@ -296,6 +300,7 @@ def measure(
         "lost": episode.lost,
         "metrics": measured.episode,
         "zones": measured.zones,
+        "roles": role_metrics(policy_of(task.job), records, measured, hits, horizon * trace.step_time),
     }
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, model_serializer
 
 from irsim.benchmarks.comparison import DEFAULT_SEEDS
 from irsim.benchmarks.policies import files_of, open_planned
+from irsim.benchmarks.roles import COMPARED
 from irsim.benchmarks.seeds import seeds_from
 from irsim.benchmarks.suite import Protocol, Suite
 from irsim.common.hashing import digest, file_digest
@@ -36,6 +37,8 @@ class PlannedScenario(BaseModel):
         folder: Folder relative to which it names map files; None where it names none.
         text: The scenario as YAML.
         maps: Name of each map file → SHA-256 of its content.
+        policies: Name or tag of robots → policy of ``Plan.company`` that drives them, or ``compared``; empty if the
+            compared policy drives all.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -47,6 +50,12 @@ class PlannedScenario(BaseModel):
     folder: str | None = None
     text: str
     maps: dict[str, str] = {}
+    policies: dict[str, str] = {}
+
+    @model_serializer(mode="wrap")
+    def _as_before(self, serialize: Callable[[PlannedScenario], dict[str, Any]]) -> dict[str, Any]:
+        """The fields, but for new ones without a value, so that the hashes of older plans stay."""
+        return {key: value for key, value in serialize(self).items() if value or key != "policies"}
 
     def document(self) -> Document:
         """The scenario, ready to read."""
@@ -64,6 +73,7 @@ class Plan(BaseModel):
         suite_hash: Hash of the suite, whatever part of it is run; empty without one.
         scenarios: The scenarios in order.
         policies: Name in the results → policy as text.
+        company: Name → policy as text that drives robots of some scenarios, whatever policy is compared.
         sources: Name → text that opens a policy that is a file, with its full path.
         digests: Name → SHA-256 of such a file.
         seeds: The seeds.
@@ -83,6 +93,7 @@ class Plan(BaseModel):
     suite_hash: str = ""
     scenarios: list[PlannedScenario]
     policies: dict[str, str]
+    company: dict[str, str] = {}
     sources: dict[str, str] = {}
     digests: dict[str, str] = {}
     seeds: list[int]
@@ -101,6 +112,19 @@ class Plan(BaseModel):
         """
         import_modules(self.imports)
         return open_planned(self.policies, self.sources, self.digests)
+
+    def parts(self) -> dict[str, dict[str, Policy | None]]:
+        """Scenario → name or tag of robots → the policy that drives them, None for the one that is compared.
+
+        Raises:
+            PolicyError: The file of one has changed since the benchmark was started.
+        """
+        opened = dict(zip(self.company, open_planned(self.company, self.sources, self.digests), strict=True))
+        return {
+            one.name: {key: None if name == COMPARED else opened[name] for key, name in one.policies.items()}
+            for one in self.scenarios
+            if one.policies
+        }
 
     @property
     def groups(self) -> dict[str, list[str]]:
@@ -122,6 +146,7 @@ class Plan(BaseModel):
             "scenarios": {"__all__": {"folder"}},
         }
         where |= {} if self.digests else {"digests": True}
+        where |= {} if self.company else {"company": True}
         text = self.model_dump_json(exclude=where)  # type: ignore[arg-type]
         return short_hash(text)
 

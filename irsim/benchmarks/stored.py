@@ -149,6 +149,7 @@ def measure_plan(plan: Plan, **options: Any) -> BenchmarkResult:
         imports=plan.imports,
         until=plan.until,
         groups=plan.groups,
+        parts=plan.parts(),
         **options,
     )
     return result_of_plan(plan, result)

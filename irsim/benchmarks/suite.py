@@ -31,6 +31,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_serializer, model_validator
 
+from irsim.benchmarks.roles import COMPARED
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
@@ -92,11 +93,16 @@ class SuiteScenario(_Part):
     tags: list[Name] = []
     """Groups to which these scenarios belong, such as ``doorway``: the scenarios of each tag are summarised in a row
     of their own."""
+    policies: dict[str, str | dict[str, Any]] = {}
+    """Name or tag of robots → the policy that drives them, where several share a scene: ``compared`` stands for each
+    policy that the suite compares, and a name of its policies means that one, as in ``{probe: compared, crowd:
+    orca}``. ``others`` are the robots that no other entry has. Results then have metrics by role."""
 
     @model_serializer(mode="wrap")
     def _as_before(self, serialize: Callable[[SuiteScenario], dict[str, Any]]) -> dict[str, Any]:
         """The fields, but for new ones without a value, so that the hashes of older suites stay."""
-        return {key: value for key, value in serialize(self).items() if value or key not in ("overrides", "tags")}
+        new = ("overrides", "tags", "policies")
+        return {key: value for key, value in serialize(self).items() if value or key not in new}
 
     def variants(self) -> Iterator[dict[str, Any]]:
         """The values of each scenario of the family, by key, in order."""
@@ -117,6 +123,8 @@ class SuiteScenario(_Part):
             raise ValueError(f"give exactly one of template, scenario and file, not {' and '.join(given) or 'none'}")
         if self.parameters and self.template is None:
             raise ValueError("parameters belong to a template; write values of a scenario where they belong")
+        if self.policies and COMPARED not in self.policies.values():
+            raise ValueError(f"policies must let some robots be driven by {COMPARED}, the policy that is compared")
         return self
 
 

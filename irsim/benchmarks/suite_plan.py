@@ -10,12 +10,15 @@ import yaml
 
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes, short_hash
 from irsim.benchmarks.policies import files_of
+from irsim.benchmarks.roles import COMPARED
 from irsim.benchmarks.suite import SUITES, Protocol, Suite, SuiteError, is_suite, load_suite
 from irsim.benchmarks.suite_scenarios import Expanded, expand, step_time_of
 from irsim.diagnostics.diagnostic import nearest, suggestion
+from irsim.policies.registry import MIXED
 from irsim.results.run import EpisodeUntil
-from irsim.scenario.behavior_override import behavior_text
+from irsim.scenario.behavior_override import behavior_text, parse_behavior
 from irsim.scenario.perturbation import perturbation_text, read_perturbations
+from irsim.scenario.yaml.rewrite import yaml_flow
 
 __all__ = ["suite_plan", "suite_policy", "suite_rules", "suite_scene"]
 
@@ -61,7 +64,9 @@ def suite_plan(
     perturbations = read_perturbations(perturb) or tuple(loaded.perturb)
     words += [word for item in perturb for word in ("--perturb", item)]
     texts = _policies(loaded, policies)
-    sources, digests = files_of(texts, {name: file.parent for name in texts if name in loaded.known_policies})
+    company = _company(loaded, made)
+    own = [name for name in texts if name in loaded.known_policies]
+    sources, digests = files_of(company | texts, dict.fromkeys([*company, *own], file.parent))
     chosen = _seeds(loaded, seeds, full)
     if isinstance(seeds, Sequence):
         words += ["--seeds", _listed(chosen)]
@@ -72,6 +77,7 @@ def suite_plan(
         suite=loaded,
         scenarios=[planned[one.name] for one in made],
         policies=texts,
+        company=company,
         sources=sources,
         digests=digests,
         seeds=chosen,
@@ -128,11 +134,18 @@ def _policies(suite: Suite, wanted: Sequence[str] | None) -> dict[str, str]:
     return {name: known.get(name, name) for name in (suite.policies if wanted is None else wanted)}
 
 
+def _company(suite: Suite, made: Sequence[Expanded]) -> dict[str, str]:
+    """Name → policy as text of those that drive robots beside the compared ones; a text of its own is its name."""
+    names = dict.fromkeys(name for one in made for name in one.policies.values() if name != COMPARED)
+    known = {name: behavior_text(policy) for name, policy in suite.known_policies.items()}
+    return {name: known.get(name, name) for name in names}
+
+
 def _planned(made: Sequence[Expanded]) -> list[PlannedScenario]:
     drafts = [
         PlannedScenario(
             name=one.name, family=one.family, protocol=one.protocol, values=dict(one.values),
-            folder=str(Path(one.folder).resolve()), text=_with_limit(one),
+            folder=str(Path(one.folder).resolve()), text=_with_limit(one), policies=one.policies,
         )
         for one in made
     ]  # fmt: skip
@@ -164,7 +177,9 @@ def suite_scene(name: str | Path) -> PlannedScenario | None:
 
 
 def suite_policy(name: str | Path, policy: str) -> str:
-    """The text of a policy; where a scenario of a suite is named and the suite has a policy of that name, its text.
+    """The text of a policy for a scenario, which may be one of a suite.
+
+    There a name of the suite means its policy, and the policies that share the scene have their robots.
 
     Args:
         name: ``SUITE/SCENARIO``, or another scenario.
@@ -174,9 +189,18 @@ def suite_policy(name: str | Path, policy: str) -> str:
         SuiteError: The suite is not valid.
     """
     parts = _split(name)
-    suite = None if parts is None else load_suite(parts[0])[0]
-    own = {} if suite is None else suite.known_policies
-    return behavior_text(own[policy]) if policy in own else policy
+    if parts is None:
+        return policy
+    suite, file = load_suite(parts[0])
+    own = {known: behavior_text(given) for known, given in suite.known_policies.items()}
+    driver = own.get(policy, policy)
+    scene = next((one for one in expand(suite, file) if one.name == parts[1]), None)
+    if scene is None or not scene.policies:
+        return driver
+    if driver.startswith("{") and (parse_behavior(driver) or {}).get("name") == MIXED:
+        return driver  # says itself who drives which robots
+    shared = {key: driver if one == COMPARED else own.get(one, one) for key, one in scene.policies.items()}
+    return yaml_flow({"name": MIXED, "policies": shared})
 
 
 def suite_rules(name: str | Path) -> tuple[list[str], EpisodeUntil] | None:

@@ -13,17 +13,20 @@ from typing import Any
 
 import yaml
 
+from irsim.benchmarks.roles import COMPARED
 from irsim.benchmarks.suite import MAX_SCENARIOS, Protocol, Suite, SuiteError, SuiteScenario, label_of, suite_error
 from irsim.bundled.templates.fill import fill, parse_path
 from irsim.bundled.templates.store import TemplateError, load
-from irsim.common.text import clean
+from irsim.common.text import clean, listed
 from irsim.common.yaml.plain import read_plain_yaml
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest
 from irsim.diagnostics.errors import InputError
 from irsim.policies.catalog import is_network
+from irsim.policies.parts import OTHERS
 from irsim.scenario.behavior_override import AS_WRITTEN, behavior_text, parse_behavior
 from irsim.scenario.messages.translate import located
 from irsim.scenario.read import read
+from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
 __all__ = ["Expanded", "expand", "of_suite", "placed", "step_time_of", "under_each_policy"]
@@ -48,7 +51,8 @@ def expand(suite: Suite, file: Path) -> list[Expanded]:
                 changed = _under(protocol, data)
                 full = name if len(suite.protocols) == 1 else f"{name}/{protocol}"
                 steps = scenario.steps or suite.horizon(step_time_of(data))
-                made.append(Expanded(full, scenario.name, protocol, values, steps, changed, file.parent))
+                parts = {key: behavior_text(one) for key, one in scenario.policies.items()}
+                made.append(Expanded(full, scenario.name, protocol, values, steps, changed, file.parent, parts))
             if len(made) > MAX_SCENARIOS * len(suite.protocols):
                 raise SuiteError(f"the suite has more than {MAX_SCENARIOS} scenarios", "vary fewer values")
     names = [one.name for one in made]
@@ -142,6 +146,7 @@ class Expanded:
         steps: Horizon in steps.
         data: The scenario.
         folder: Folder relative to which it names other files.
+        policies: Name or tag of robots → name or text of the policy that drives them, or ``compared``.
     """
 
     name: str
@@ -151,6 +156,7 @@ class Expanded:
     steps: int
     data: dict[str, Any] = field(repr=False)
     folder: Path = field(repr=False)
+    policies: dict[str, str] = field(default_factory=dict)
 
     def document(self, data: Mapping[str, Any] | None = None) -> Document:
         """The scenario, or another one in its place, ready to read."""
@@ -171,10 +177,28 @@ def check_scenarios(suite: Suite, made: Sequence[Expanded], file: Path) -> None:
     """
     problems: dict[tuple[Any, ...], Diagnostic] = {}
     for one in made:
-        for item in read(one.document(), strict=True).errors:
+        reading = read(one.document(), strict=True)
+        for item in reading.errors:
             problems.setdefault((one.family, item.code, item.path, item.message), of_suite(item, one, suite))
+        for item in [] if reading.scenario is None else _unknown_robots(one, suite, reading.scenario):
+            problems.setdefault((one.family, item.code, item.path, item.message), item)
     if problems:
         raise suite_error(file, placed(list(problems.values()), suite, file))
+
+
+def _unknown_robots(one: Expanded, suite: Suite, scenario: ResolvedScenario) -> Iterator[Diagnostic]:
+    """The names and tags under ``policies`` that no robot of the scenario has."""
+    robots = scenario.robots()
+    known = list(dict.fromkeys([*(tag for robot in robots for tag in robot.tags), *(robot.name for robot in robots)]))
+    index = next(number for number, each in enumerate(suite.scenarios) if each.name == one.family)
+    for key in one.policies:
+        if key not in (*known, OTHERS):
+            near = nearest(key, known)
+            message = f"scenario {one.family!r}: no robot has the name or tag {clean(key)!r}"
+            fix = f"did you mean {clean(near)}?" if near else f"choose from {listed([*known, OTHERS], 10)}"
+            yield Diagnostic(
+                "invalid-value", "error", ("scenarios", index, "policies", key), message, given=key, fix=fix
+            )
 
 
 def of_suite(item: Diagnostic, one: Expanded, suite: Suite) -> Diagnostic:
@@ -240,7 +264,12 @@ def under_each_policy(one: Expanded, suite: Suite) -> Iterator[tuple[str, Mappin
             options = parse_behavior(text)
         except InputError:
             continue
-        yield name, {**one.data, "robot": [_with(entry, options) for entry in _entries(one.data.get("robot"))]}
+        mine = {key for key, part in one.policies.items() if part == COMPARED}
+        entries = [
+            _with(entry, options) if not mine or mine & {entry.get("name"), *(entry.get("tags") or ())} else entry
+            for entry in _entries(one.data.get("robot"))
+        ]
+        yield name, {**one.data, "robot": entries}
 
 
 def _entries(given: Any) -> list[dict[str, Any]]:

@@ -236,6 +236,7 @@ def _row(
         metrics=metrics,
         paired=paired_differences(pairs, KEYS, shown_as_shares, together=is_summary(name)) if pairs else {},
         zones={} if is_summary(name) else _zones(episodes),
+        roles={} if is_summary(name) else _roles(episodes, certain),
         failed={
             outcome: [episode.seed for episode in episodes if episode.outcome == outcome]
             for outcome in ("collision", "timeout")
@@ -274,6 +275,19 @@ def _zones(episodes: list[EpisodeRow]) -> dict[str, dict[str, Estimate]]:
         zone: estimates({key: [zones[zone][key] for zones in measured] for key in values})
         for zone, values in (measured[0] if measured else {}).items()
     }
+
+
+_SHARES_OF_ROLES = frozenset({"success", "collision", "timeout"})
+
+
+def _roles(episodes: list[EpisodeRow], certain: bool) -> dict[str, dict[str, Estimate]]:
+    """Estimates of the metrics of each role; shares of a single robot get the interval of a proportion."""
+    result = {}
+    for role, first in (episodes[0].roles if episodes else {}).items():
+        alone = not certain and first["robots"] == 1
+        columns = {key: [episode.roles.get(role, {}).get(key) for episode in episodes] for key in first}
+        result[role] = estimates(columns, _SHARES_OF_ROLES if alone else ())
+    return result
 
 
 def _frequent_failures(episodes: Sequence[EpisodeRow]) -> dict[str, int]:

@@ -10,7 +10,7 @@ from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of
 from irsim.navigation.geodesic import Geodesics
-from irsim.policies.driver import PolicyDriver, attach_policy, driver_of
+from irsim.policies.driver import PolicyDriver, attach_policy, drivers_of
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import read_events
 from irsim.simulation.outcome import explored_share
@@ -42,7 +42,7 @@ def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) 
     scene, horizons = _scene(job, seeds)
     alone = list(seeds)
     if scene is not None and _fit_together(scene.simulation):
-        alone = alone[:1] if len(seeds) == 1 or driver_of(scene.simulation) else []
+        alone = alone[:1] if len(seeds) == 1 or drivers_of(scene.simulation) else []
     yield from (run_task(Task(job, seed), ways) for seed in alone)
     seeds = seeds[len(alone) :]
     if not seeds or scene is None:

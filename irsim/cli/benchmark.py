@@ -216,6 +216,9 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
         if watched := _watched_line(row):
             combination = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
             out.print(f"watched: {combination}: {watched}")
+        if roles := _roles_line(row):
+            combination = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
+            out.print(f"by role: {combination}: {roles}", soft_wrap=True)
     legend = "95 % intervals: Wilson for rates, Newcombe for their differences, bootstrap for means"
     legend += "; time s: time to goal of robots that arrived"
     if any(0 < row.metrics[key].n < row.episodes for row in result.rows for key in shown):
@@ -282,6 +285,16 @@ def _watched_line(row: BenchmarkRow) -> str:
             parts.append(f"{clean(name, 24)} {crossings} crossings (right - left)")
     if row.metrics["seen_ratio"].n:
         parts.append(f"seen {_mean(row.metrics['seen_ratio'], 2, row.episodes)} of the time")
+    return "; ".join(parts)
+
+
+def _roles_line(row: BenchmarkRow) -> str:
+    """Return what each role reached, where several policies share the robots; empty otherwise."""
+    parts = []
+    for role, values in row.roles.items():
+        shares = ", ".join(f"{key} {100 * (values[key].mean or 0):.0f}%" for key in ("success", "collision", "timeout"))
+        time = _mean(values["time_to_goal"], 1, row.episodes)
+        parts.append(f"{clean(role, 24)} ({values['robots'].mean:g}) {shares}, time {time} s")
     return "; ".join(parts)
 
 

@@ -82,12 +82,12 @@ def remember_written(env: EnvState, plain: ResolvedScenario, driven: ResolvedSce
 
 
 def drive_again(env: EnvState) -> None:
-    """Give robots that have come the behavior that is the policy; policies in Python find new robots themselves."""
+    """Give robots that have come the behavior that drives them; policies in Python find new robots themselves."""
     if env._policy is None:
         return
     from irsim.policies.behavior import BehaviorPolicy
 
-    if isinstance(env._policy, BehaviorPolicy):
+    if any(isinstance(one, BehaviorPolicy) for one in (env._policy, *env._policy.parts.values())):
         set_policy(env, env._policy)
 
 

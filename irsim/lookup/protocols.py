@@ -29,6 +29,10 @@ _OUTCOMES = (
     "`placement-crowded` and counts in no rate. [Metrics](metrics.md) are defined elsewhere; the deciding one is "
     "`success`."
 )
+_ROLES = (
+    "Here several policies share a scene, so read `success` by role: the share of the robots of a role that arrived "
+    "without a contact, where each episode counts once."
+)
 _STATISTICS = f"{INTERVALS} Differences are of the same scenario and seed; ranks and all pairs: [result](result.md)."
 
 
@@ -51,7 +55,8 @@ def _parts(name: str) -> Iterator[str]:
     yield " ".join(_rules(suite, len(plan.scenarios)))
     rows = [*_policies(suite.policies), *_policies(suite.others)]
     yield "## Policies, and what they know\n\n" + plain_table(("policy", "as written", "knows"), rows)
-    yield f"## Outcomes and metrics\n\n{_ENDS[suite.until]} {_OUTCOMES}"
+    roles = f" {_ROLES}" if any(family.policies for family in suite.scenarios) else ""
+    yield f"## Outcomes and metrics\n\n{_ENDS[suite.until]} {_OUTCOMES}{roles}"
     yield f"## Statistics\n\n{_STATISTICS}"
     yield "## Assumptions and threats\n\n" + "\n".join(f"- {threat}" for threat in _threats(suite, scenes))
     if suite.sources:
@@ -67,6 +72,7 @@ def _rows(suite: Suite, scenes: Mapping[str, ResolvedScenario]) -> Iterator[tupl
         x0, y0, x1, y1 = scene.world.bounds
         varied = {key: [str(each[key]) for each in family.variants() if key in each] for key in family.varied()}
         words = [f"`{key}`: {listed([*dict.fromkeys(varied[key])], 6)}" for key in sorted(varied)]
+        words += [f"{key}: `{behavior_text(one)}`" for key, one in family.policies.items()]
         robots = len(scene.robots())
         yield (
             f"`{family.name}`",

@@ -14,6 +14,7 @@ from irsim.diagnostics.errors import PolicyError, ScenarioError
 from irsim.options.knowledge import Fact
 from irsim.options.registry import BEHAVIORS
 from irsim.policies.observations import Observations
+from irsim.policies.parts import check_parts, part_of
 from irsim.policies.policy import Policy
 from irsim.scenario.behavior_override import AS_WRITTEN, merged_options, parse_behavior, raise_if_about_behavior
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
@@ -68,14 +69,23 @@ class BehaviorPolicy(Policy):
 
 
 def with_policy(scenario: ResolvedScenario, policy: Policy | None) -> ResolvedScenario:
-    """The scenario with the behavior that a policy stands for; unchanged for all other policies.
+    """The scenario with the behaviors that a policy, or its parts, stand for; unchanged for all other policies.
 
     Raises:
         InputError: The behavior has an unknown option or an invalid value, or cannot drive one of the robots.
+        PolicyError: A part of a policy of several has no robot.
     """
-    if not isinstance(policy, BehaviorPolicy) or policy.options is None:
+    if policy is None:
         return scenario
-    objects = [_changed(record, policy.options, scenario) for record in scenario.objects]
+    check_parts(policy, scenario.objects)
+    if not any(isinstance(one, BehaviorPolicy) and one.options is not None for one in (policy, *policy.parts.values())):
+        return scenario
+    objects = list[ObjectRecord]()
+    for record in scenario.objects:
+        part = part_of(policy, record)
+        own = policy.parts[part] if part is not None else policy
+        options = own.options if isinstance(own, BehaviorPolicy) else None
+        objects.append(record if options is None else _changed(record, options, scenario))
     return replace(scenario, objects=objects)
 
 

@@ -17,10 +17,11 @@ from irsim.diagnostics.diagnostic import nearest, suggestion
 from irsim.diagnostics.errors import CodedError, InputError, PolicyError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.policies.behavior import BehaviorPolicy
+from irsim.policies.mixed import MixedPolicy
 from irsim.policies.observations import Observations
 from irsim.policies.policy import FunctionPolicy, Policy
 from irsim.policies.random import RandomPolicy
-from irsim.policies.registry import POLICIES, RANDOM, RL_RVO_AUTHORS
+from irsim.policies.registry import MIXED, POLICIES, RANDOM, RL_RVO_AUTHORS
 from irsim.policies.trained import COMMON_NAMES, trained_policies, trained_policy
 from irsim.scenario.behavior_override import AS_WRITTEN, behavior_text, parse_behavior, split_behaviors
 from irsim.scenario.locate import why_outside
@@ -65,7 +66,7 @@ def behavior_names() -> list[str]:
 
 def policy_names() -> list[str]:
     """Names of all policies that are not files, sorted."""
-    return sorted({*behavior_names(), RANDOM, *POLICIES.names(), *trained_policies()})
+    return sorted({*behavior_names(), RANDOM, MIXED, *POLICIES.names(), *trained_policies()})
 
 
 def open_policy(source: PolicySource, *, folder: str | Path | None = None, root: str | Path | None = None) -> Policy:
@@ -112,12 +113,25 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
         return trained
     if name == RANDOM:
         return _named(_made(name, RandomPolicy, keys), text)
+    if name == MIXED:
+        return _mixed(text, keys, folder, root)
     if name == RL_RVO_AUTHORS:
         return _with_weights(text, keys, folder, root)
     maker = POLICIES.get(name) if root is None else None
     if maker is None:
         raise _unknown(name, root)
     return _named(_made(name, maker, keys), text)
+
+
+def _mixed(text: str, keys: Mapping[str, Any], folder: str | Path | None, root: str | Path | None) -> Policy:
+    """A policy of several; errors name the part."""
+    parts = keys.get("policies")
+    opened: Any = parts
+    if isinstance(parts, Mapping):
+        opened = {str(key): open_policy(one, folder=folder, root=root) for key, one in parts.items()}
+    policy = _made(MIXED, MixedPolicy, {**keys, "policies": opened} if "policies" in keys else keys)
+    policy.text = text
+    return policy
 
 
 def _with_weights(text: str, keys: dict[str, Any], folder: str | Path | None, root: str | Path | None) -> Policy:
@@ -147,12 +161,16 @@ def _is_trained(name: str) -> bool:
 
 
 def is_network(text: str) -> bool:
-    """Whether the text of a policy names a file, or one that is read from a file: a trained one, or brought weights.
+    """Whether the text of a policy names a file, or a policy that is read from one: trained, or with brought weights.
 
     Raises:
         InputError: The text is not a policy.
     """
-    return names_file(text) or names_trained(text) or _parsed(text)[0] == RL_RVO_AUTHORS
+    name, options = _parsed(text)
+    parts = options.get("policies") if name == MIXED else None
+    if isinstance(parts, Mapping):
+        return any(isinstance(one, (str, Mapping)) and is_network(behavior_text(one)) for one in parts.values())
+    return name.endswith(SUFFIXES) or _is_trained(name) or name == RL_RVO_AUTHORS
 
 
 def names_file(text: str) -> bool:
@@ -200,7 +218,7 @@ def _parsed(text: str) -> tuple[str, dict[str, Any]]:
 
 
 def _unknown(name: str, root: str | Path | None) -> UnknownPolicyError:
-    known = policy_names() if root is None else sorted({*behavior_names(), RANDOM, *trained_policies()})
+    known = policy_names() if root is None else sorted({*behavior_names(), RANDOM, MIXED, *trained_policies()})
     near = COMMON_NAMES.get(name.lower()) or nearest(name, known)
     fix = f"did you mean {near}?" if near else f"choose one of {', '.join(known)}, or a file (.npz, .onnx)"
     if root is not None and name in POLICIES.names():

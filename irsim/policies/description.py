@@ -13,10 +13,11 @@ from irsim.options.knowledge import knowledge_text
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import behavior_names, is_installed, names_file, names_trained, open_policy
+from irsim.policies.mixed import MixedPolicy
 from irsim.policies.networks.network_policy import NetworkPolicy
 from irsim.policies.policy import Needs, Policy
 from irsim.policies.random import RandomPolicy
-from irsim.policies.registry import POLICIES, RANDOM
+from irsim.policies.registry import MIXED, POLICIES, RANDOM
 from irsim.policies.trained import trained_policies
 from irsim.scenario.behavior_override import AS_WRITTEN
 
@@ -70,6 +71,7 @@ def list_policies() -> list[PolicyInfo]:
     return [
         *map(_behavior, behaviors),
         _random(),
+        _mixed(),
         *map(describe_policy, trained_policies()),
         *(_plugin(name) for name in POLICIES.names()),
     ]
@@ -83,6 +85,8 @@ def describe_policy(text: str, folder: str | Path | None = None) -> PolicyInfo:
     """
     if text in POLICIES.names():
         return _plugin(text)
+    if text == MIXED:
+        return _mixed()
     policy = open_policy(text, folder=folder)
     if isinstance(policy, BehaviorPolicy):
         return _behavior(policy.name)
@@ -96,7 +100,7 @@ def _kind(text: str, policy: Policy) -> str:
         return "file"
     if names_trained(text):
         return "trained"
-    return "built-in" if policy.name == RANDOM else "plug-in"
+    return "built-in" if policy.name in (RANDOM, MIXED) else "plug-in"
 
 
 def _behavior(name: str) -> PolicyInfo:
@@ -113,6 +117,13 @@ def _behavior(name: str) -> PolicyInfo:
 
 def _random() -> PolicyInfo:
     return _info(RANDOM, "built-in", RandomPolicy(), _about(RandomPolicy), _options(RandomPolicy))
+
+
+def _mixed() -> PolicyInfo:
+    about, options = _about(MixedPolicy), _options(MixedPolicy)
+    return PolicyInfo(
+        MIXED, "built-in", about, "its parts say", [], ["any"], options=options, meanings=_arguments(MixedPolicy)
+    )
 
 
 def _plugin(name: str) -> PolicyInfo:

@@ -18,6 +18,7 @@ from irsim.diagnostics.errors import CodedError, PolicyError
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.fit import check_declaration, check_fit, drive_of
 from irsim.policies.observe import Observer
+from irsim.policies.parts import part_of
 from irsim.policies.policy import Episode, Policy
 from irsim.simulation.build import CORE_CONTROLS
 from irsim.simulation.random_streams import generator
@@ -25,7 +26,7 @@ from irsim.simulation.random_streams import generator
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["PolicyDriver", "attach_policy", "decision_steps", "driver_of"]
+__all__ = ["PolicyDriver", "attach_policy", "decision_steps", "drivers_of"]
 
 _NEVER = np.iinfo(np.int64).max
 _MEMORY = ("_numbers", "_begun", "_last", "_keys", "_held", "_next", "_first", "_active")
@@ -59,14 +60,18 @@ class _Group:
 class PolicyDriver:
     """Part of the steps of a simulation: asks a policy, and keeps what it decided until the next decision.
 
-    It drives every robot that can move. Scenario draws, obstacles and noise do not depend on it.
+    It drives every robot that can move, or those of one part of a policy of several. Scenario draws, obstacles and
+    noise do not depend on it.
 
     Args:
         simulation: The simulation, with one world or many.
-        policy: The policy.
+        policy: The policy, or a part of one.
+        whole: The policy of several that it is a part of.
+        part: The selection of the robots that this part drives.
 
     Attributes:
         policy: The policy.
+        whole: The policy of several that it is a part of; None for one that drives all robots.
         seconds: Wall-clock time of each call of ``act`` [s], for timings only.
         decided: Number of robots that each of these calls decided for.
 
@@ -74,9 +79,13 @@ class PolicyDriver:
         PolicyError: The policy cannot drive a robot (``policy-mismatch``).
     """
 
-    def __init__(self, simulation: Simulation, policy: Policy) -> None:
+    def __init__(
+        self, simulation: Simulation, policy: Policy, whole: Policy | None = None, part: str | None = None
+    ) -> None:
         check_declaration(policy)
         self.policy = policy
+        self.whole, self._part = whole, part
+        self._stream = 0 if whole is None or part is None else MAX_DRIVES * list(whole.parts).index(part)
         self.seconds: list[float] = []
         self.decided: list[int] = []
         self._steps = decision_steps(policy, float(simulation.scenario.world.step_time))
@@ -104,7 +113,10 @@ class PolicyDriver:
         robots = [
             index
             for index, record in enumerate(records)
-            if record.role == "robot" and record.kinematics is not None and not record.static
+            if record.role == "robot"
+            and record.kinematics is not None
+            and not record.static
+            and (self.whole is None or part_of(self.whole, record) == self._part)
         ]
         check_fit(self.policy, simulation, robots)
         self._robots = np.array(robots, dtype=np.int64)
@@ -204,7 +216,7 @@ class PolicyDriver:
                 footprints = self._footprints(simulation, world, group) if self.policy.needs.footprints else ()
                 slot = int(self._slot(world, group))
                 episode = Episode(slot, robots, step_time, self._steps, group.drive, footprints)
-                rng = generator(*simulation.key(world), stream="policy", object_id=group.number)
+                rng = generator(*simulation.key(world), stream="policy", object_id=self._stream + group.number)
                 self._guarded(self.policy.reset, episode, rng)
                 self._begun[group.number, world] = True
 
@@ -306,13 +318,15 @@ def claim_worlds(policy: Policy, count: int, driver: PolicyDriver) -> int:
     return free
 
 
-def driver_of(simulation: Simulation) -> PolicyDriver | None:
-    """The driver of a simulation; None if no policy in Python drives it."""
-    return next((part for part in simulation.decisions if isinstance(part, PolicyDriver)), None)
+def drivers_of(simulation: Simulation) -> list[PolicyDriver]:
+    """The drivers of a simulation: one for each policy in Python that drives robots of it."""
+    return [part for part in simulation.decisions if isinstance(part, PolicyDriver)]
 
 
-def attach_policy(simulation: Simulation, policy: Policy | None) -> PolicyDriver | None:
+def attach_policy(simulation: Simulation, policy: Policy | None) -> None:
     """Let a policy drive the robots of a simulation from the next step on, instead of an earlier one.
+
+    The parts of a policy of several that drives them already go on.
 
     Args:
         simulation: The simulation, with its Python drives attached.
@@ -322,8 +336,13 @@ def attach_policy(simulation: Simulation, policy: Policy | None) -> PolicyDriver
     Raises:
         PolicyError: The policy cannot drive a robot (``policy-mismatch``).
     """
-    driver = None if policy is None or isinstance(policy, BehaviorPolicy) else PolicyDriver(simulation, policy)
+    if policy is not None and policy.parts and any(one.whole is policy for one in drivers_of(simulation)):
+        return
+    drivers = []
+    if policy is not None and policy.parts:
+        named = [(part, one) for part, one in policy.parts.items() if not isinstance(one, BehaviorPolicy)]
+        drivers = [PolicyDriver(simulation, one, policy, part) for part, one in named]
+    elif policy is not None and not isinstance(policy, BehaviorPolicy):
+        drivers = [PolicyDriver(simulation, policy)]
     simulation.decisions[:] = [part for part in simulation.decisions if not isinstance(part, PolicyDriver)]
-    if driver is not None:
-        simulation.decisions.append(driver)
-    return driver
+    simulation.decisions.extend(drivers)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
 from irsim.common.arguments import as_given, is_number, is_whole_number
@@ -113,6 +114,7 @@ class Policy(ABC):
         text: How it is written in commands, such as ``orca`` or ``model.npz``; None: only this program has it.
         source: Text that opens it from any folder, with the full path of its file; None as for ``text``.
         digest: SHA-256 of the file that it was read from; None without one.
+        parts: Name or tag of robots -> the policy that drives them; empty for a policy that drives all robots.
     """
 
     name: str
@@ -127,6 +129,7 @@ class Policy(ABC):
     text: str | None = None
     source: str | None = None
     digest: str | None = None
+    parts: Mapping[str, Policy] = MappingProxyType({})
 
     def reset(self, episode: Episode, rng: np.random.Generator) -> None:  # noqa: B027 - most policies remember nothing
         """Begin an episode in one world.

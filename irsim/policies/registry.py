@@ -8,12 +8,14 @@ from typing import Any, TypeVar
 from irsim.options.registry import BEHAVIORS
 from irsim.policies.policy import Policy
 
-__all__ = ["GROUP", "POLICIES", "RANDOM", "RL_RVO_AUTHORS", "PolicyRegistry", "register_policy"]
+__all__ = ["GROUP", "MIXED", "POLICIES", "RANDOM", "RL_RVO_AUTHORS", "PolicyRegistry", "register_policy"]
 
 GROUP = "irsim.policies"
 """Entry-point group of policies: each entry is a subclass of ``Policy``, or a function that returns a policy."""
 RANDOM = "random"
 """Name of the built-in policy of uniform controls."""
+MIXED = "mixed"
+"""Name of the built-in policy of several policies."""
 RL_RVO_AUTHORS = "rl_rvo_authors"
 """Name of the policy with weights that the user brings."""
 _OWN = {RL_RVO_AUTHORS: "irsim.policies.rl_rvo_authors:RlRvoAuthorsPolicy"}
@@ -36,7 +38,7 @@ class PolicyRegistry:
         Raises:
             ValueError: The name belongs to a behavior, to a file, or to another maker.
         """
-        if name == RANDOM or name in BEHAVIORS.installed():
+        if name in (RANDOM, MIXED) or name in BEHAVIORS.installed():
             raise ValueError(f"{name!r} is built in; give your policy another name")
         if not name or any(character in name for character in " :{}[],/\\") or name.endswith((".npz", ".onnx")):
             raise ValueError(f"{name!r} cannot name a policy: use letters, digits, - and _")

@@ -87,6 +87,9 @@ class BenchmarkRow(Result):
     zones: dict[str, dict[str, Estimate]] = Field(default_factory=dict)
     """Metrics of each zone of ``world.zones``, by its name: ``time_in_zone`` [s], ``zone_crossings``, and of a line
     ``left_to_right`` and ``right_to_left``; empty for ``(all)``."""
+    roles: dict[str, dict[str, Estimate]] = Field(default_factory=dict)
+    """Metrics of each role, where several policies share the robots, by its name or tag: see ``EpisodeRow.roles``. An
+    episode counts once, whatever the number of its robots; empty for ``(all)``."""
     failed: dict[str, list[int]] = Field(default_factory=dict)
     """Seeds that ended in ``collision`` and in ``timeout``; empty for ``(all)``."""
     failures: dict[str, int] = Field(default_factory=dict)
@@ -171,6 +174,10 @@ class EpisodeRow(Result):
     """Metrics of the episode by key; None where undefined."""
     zones: dict[str, dict[str, float]] = Field(default_factory=dict)
     """Metrics of each zone of ``world.zones``, by its name: means over the robots."""
+    roles: dict[str, dict[str, float | None]] = Field(default_factory=dict)
+    """Metrics of each role, where several policies share the robots (``{name: mixed, …}``): ``robots`` (their number),
+    ``success``, ``collision`` and ``timeout`` (shares of them), ``time_to_goal`` [s] and ``velocity_avg`` [m/s] (means
+    of those that arrived), ``restricted_time`` [s] and ``collision_count`` (means); None where undefined."""
 
 
 class BenchmarkResult(Result):

@@ -266,10 +266,11 @@ class Services:
 
     async def suite_policy(self, given: str | None, policy: str | None) -> str | None:
         """The text of a policy, which may be one that the suite knows if ``given`` is a scenario of a suite."""
-        if policy is None or given is None or suite_of(given) is None:
+        if given is None or suite_of(given) is None:
             return policy
-        arguments = {"name": given, "policy": policy}
-        return str((await self._read("suite_policy", arguments, "policy"))["text"])
+        arguments = {"name": given, "policy": policy or "as-written"}
+        text = str((await self._read("suite_policy", arguments, "policy"))["text"])
+        return None if policy is None and text == "as-written" else text
 
     async def suite_rules(self, given: str | None) -> dict[str, Any]:
         """Perturbations and ``until`` of the suite that ``given`` names a scenario of; empty for other scenarios."""

@@ -11,6 +11,7 @@ import irsim
 from irsim import api
 from irsim.benchmarks.episode import Job, Task, environment_of, run_task
 from irsim.benchmarks.policies import job_keys
+from irsim.benchmarks.roles import shared_with
 from irsim.benchmarks.suite import SUITES
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.runs import open_run
@@ -34,7 +35,7 @@ def test_a_scenario_of_a_suite_runs_as_the_suite_runs_it(suite: str, tmp_path: P
             job = Job(
                 text=scenario.text, path=scenario.document().path, steps=plan.steps, strict=plan.strict, imports=(),
                 limits=tuple(vars(DEFAULT_LIMITS).items()), perturb=tuple(plan.perturb), until=plan.until,
-                **job_keys(policy),
+                **job_keys(shared_with(policy, plan.parts().get(scenario.name, {}))),
             )  # fmt: skip
             measured = run_task(Task(job, seed))
             folder = tmp_path / f"{scenario.name.replace('/', '-')}-{seed}"

@@ -12,16 +12,16 @@ from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite import SUITES
 from irsim.results.benchmark import SuiteResult
 from tests.benchmarks.central_planner import scene, share, succeeds
-from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES, changes, counted, lines_of
+from tests.benchmarks.reference.roles import page
+from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES, changes, counted
 
 
 def rerun(name: str, folder: Path, seeds: int, scenarios: tuple[str, ...] | None) -> None:
     """Run the first seeds of a table again, and compare each episode with the kept one."""
     result = run_plan(TABLES[name].plan(seeds=seeds, scenarios=scenarios), folder)
     assert isinstance(result, SuiteResult)
-    labels = {text: name for name, text in result.policies.items()}
     kept = set((FOLDER / f"{name}.csv").read_text(encoding="utf-8").splitlines())
-    lines = lines_of(result.episodes, labels)
+    lines = TABLES[name].lines(result)
     assert len(lines) == len(result.scenarios) * len(result.behaviors) * seeds
     assert [line for line in lines if line not in kept] == []
 
@@ -41,7 +41,14 @@ def test_many_episodes_are_the_kept_ones(name: str, tmp_path: Path) -> None:
     rerun(name, tmp_path / "again", 12, TABLES[name].again)
 
 
-@pytest.mark.parametrize("name", TABLES)
+def test_the_page_of_mixed_populations_is_that_of_its_episodes() -> None:
+    for name in (name for name, table in TABLES.items() if table.by_role):
+        with (FOLDER / f"{name}.csv").open(encoding="utf-8") as file:
+            text = page(list(csv.DictReader(file)), TABLES[name].plan())
+        assert (PAGES / f"{name}.md").read_text(encoding="utf-8") == text
+
+
+@pytest.mark.parametrize("name", [name for name, table in TABLES.items() if not table.by_role])
 def test_the_table_counts_the_kept_episodes(name: str) -> None:
     page = (PAGES / f"{name}.md").read_text(encoding="utf-8")
     assert TABLES[name].suite in SUITES.names()

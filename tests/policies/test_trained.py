@@ -68,7 +68,7 @@ def test_its_card_and_curve_are_those_of_the_file_and_a_lookup_tells_what_it_is_
 def test_a_name_that_a_suite_gives_leads_to_the_policy() -> None:
     answer = lookup("PPO")
     assert answer.topic == "multi_robot"
-    assert "The suite random_polygons_v1 calls it ppo." in answer.text
+    assert "The suite mixed_v2 calls it ppo." in answer.text
 
 
 ROBOTS = """

@@ -13,7 +13,7 @@ from irsim.benchmarks.policies import job_keys
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.benchmarks.timing import time_behavior
 from irsim.policies.behavior import BehaviorPolicy
-from irsim.policies.driver import driver_of
+from irsim.policies.driver import drivers_of
 
 SUITE = "random_polygons_v1"
 POLICIES = ("orca", "avocado", "ppo")
@@ -36,7 +36,7 @@ def times(policy: str, robots: int, seeds: int) -> np.ndarray[tuple[int, int], n
             continue
         env = environment_of(replace(job, local=opened, policy=None), seed)
         env.simulation.advance(_MAX_STEPS, until_done=True)
-        driver = driver_of(env.simulation)
+        driver = next(iter(drivers_of(env.simulation)), None)
         assert driver is not None
         pairs += zip(driver.seconds, driver.decided, strict=True)
         env.end(ending_time=0.0)

@@ -13,6 +13,7 @@ __all__ = [
     "INTERVALS",
     "POLICIES",
     "RANKS",
+    "ROLES",
     "Table",
     "about_of",
     "cells_of",
@@ -23,6 +24,7 @@ __all__ = [
     "facts_of",
     "markdown",
     "ranks_of",
+    "roles_of",
     "title_of",
     "zones_of",
 ]
@@ -51,6 +53,8 @@ INTERVALS = (
 """Notes that a reader needs to judge the numbers."""
 POLICIES = "Policies by what they know besides their own state and goal"
 """The heading of the policies."""
+ROLES = "By role: shares and means of the robots that one policy drives, each episode counted once"
+"""The heading of the roles."""
 RANKS = "Ranks by success, and the ranks that the intervals of all pairs allow"
 """The heading of the ranks."""
 Table = tuple[list[str], list[list[str]]]
@@ -72,6 +76,8 @@ def markdown(result: BenchmarkResult, notes: Sequence[str] = ()) -> str:
     lines += _table((["scenario", "policy", "n", *(heading for _, heading in columns)], rows))
     if zones := zones_of(result):
         lines += ["", "Zones, means over the robots:", "", *_table(zones)]
+    if roles := roles_of(result):
+        lines += ["", f"{ROLES}:", "", *_table(roles)]
     if differences := differences_of(result):
         first = markdown_text(labels[result.behaviors[0]])
         lines += ["", f"Differences to {first} with the same seeds:", "", *_table(differences)]
@@ -164,6 +170,27 @@ def zones_of(result: BenchmarkResult) -> Table | None:
     ]
     headings = ["time_in_zone [s]" if key == "time_in_zone" else key for key in keys]
     return (["scenario", "policy", "zone", *headings], rows) if rows else None
+
+
+_OF_ROLES = (
+    ("success", "success"), ("collision", "collision"), ("timeout", "timeout"), ("time_to_goal", "time [s]"),
+    ("restricted_time", "restricted time [s]"), ("velocity_avg", "speed [m/s]"),
+)  # fmt: skip
+
+
+def roles_of(result: BenchmarkResult) -> Table | None:
+    """The table of roles, one row for each role of each row; None where one policy drives all robots."""
+    labels = policy_labels(result)
+    rows = [
+        [
+            row.scenario, labels[row.behavior], role, f"{values['robots'].mean:g}",
+            *(_mean(values[key]) for key, _ in _OF_ROLES),
+        ]
+        for row in result.rows
+        for role, values in row.roles.items()
+    ]  # fmt: skip
+    headings = [heading for _, heading in _OF_ROLES]
+    return (["scenario", "policy", "role", "robots", *headings], rows) if rows else None
 
 
 def differences_of(result: BenchmarkResult) -> Table | None:

@@ -12,6 +12,7 @@ from irsim.benchmarks.report.markdown import (
     INTERVALS,
     POLICIES,
     RANKS,
+    ROLES,
     Table,
     about_of,
     cells_of,
@@ -21,6 +22,7 @@ from irsim.benchmarks.report.markdown import (
     differences_of,
     facts_of,
     ranks_of,
+    roles_of,
     title_of,
     zones_of,
 )
@@ -61,6 +63,7 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
         *(f"<p>{_shown(line)}</p>" for line in about_of(result)),
         _table(main), f'<p class="small">{_shown(INTERVALS)}</p>',
         "<h2>Zones</h2><p>Means over the robots.</p>" + _table(zones) if zones else "",
+        f"<h2>{_shown(ROLES)}</h2>" + _table(roles) if (roles := roles_of(result)) else "",
         f"<h2>Differences to {_shown(labels[result.behaviors[0]])} with the same seeds</h2>" + _table(differences)
         if differences else "",
         f"<h2>{_shown(RANKS)}</h2>" + _table(ranks) if (ranks := ranks_of(result)) else "",

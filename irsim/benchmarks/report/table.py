@@ -3,7 +3,7 @@
 Columns are ``scenario``, ``family`` and ``protocol`` (of a suite), a column ``values.KEY`` for each key that the suite
 varies, ``policy`` (name in the suite), ``behavior`` (as text), ``seed``, ``outcome``, ``steps``, ``sim_time``,
 ``time_limit``, ``unreachable``, ``human_contacts``, ``failures`` (JSON), ``left``, ``jumped``, every metric under its
-key, and ``zones.ZONE.KEY`` for the metrics of zones. Undefined values are null.
+key, and ``zones.ZONE.KEY`` and ``roles.ROLE.KEY`` for the metrics of zones and of roles. Undefined values are null.
 
 The metadata of each column are ``unit`` and ``description``; the file itself has ``irsim`` (version),
 ``irsim.hash`` (of everything that decides the numbers), ``irsim.reproduce`` (command), ``irsim.suite`` and
@@ -117,6 +117,11 @@ def _columns(result: BenchmarkResult) -> list[_Column]:
         unit = metrics[key].unit if key in metrics else "count"
         cells = _numbers(one.zones.get(zone, {}).get(key) for one in episodes)
         columns.append(_Column(f"zones.{zone}.{key}", "number", unit, f"{key} of the zone {zone}", cells))
+    roles = dict.fromkeys((role, key) for one in episodes for role, values in one.roles.items() for key in values)
+    for role, key in roles:
+        unit = metrics[key].unit if key in metrics else "count"
+        cells = _numbers(one.roles.get(role, {}).get(key) for one in episodes)
+        columns.append(_Column(f"roles.{role}.{key}", "number", unit, f"{key} of the robots {role}", cells))
     return columns
 
 

@@ -315,6 +315,10 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str], de
         clean(name): {key: _numbers(metric) for key, metric in zone.items()} for name, zone in row["zones"].items()
     }
     shown |= {"zones": zones} if zones else {}
+    roles = {
+        clean(name): {key: _numbers(metric) for key, metric in role.items()} for name, role in row["roles"].items()
+    }
+    shown |= {"roles": roles} if roles else {}
     diff = _defined(row["paired"], _DIFFERENCES, row["episodes"])
     shown |= {"diff": diff} if diff else {}
     if failed := seeds_of(row["failed"], _MAX_FAILED_SEEDS):

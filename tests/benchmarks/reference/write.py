@@ -22,6 +22,7 @@ from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.benchmark import EpisodeRow, SuiteResult
+from tests.benchmarks.reference.roles import HEAD, lines_by_role, page
 
 __all__ = ["FOLDER", "PAGES", "TABLES", "Table", "changes", "counted", "lines_of", "main"]
 
@@ -38,16 +39,23 @@ class Table:
         policies: The policies; None: the policies of the suite.
         quick: Names of the scenarios that the quick tests run again.
         again: Names of the scenarios that the slow tests run again; None: all.
+        by_role: Whether lines and page are those of ``roles.py``.
     """
 
     suite: str
     quick: tuple[str, ...]
     policies: tuple[str, ...] | None = None
     again: tuple[str, ...] | None = None
+    by_role: bool = False
 
     def plan(self, **keys: Any) -> Plan:
         """Its plan, or a part of it."""
         return suite_plan(self.suite, policies=self.policies, **keys)
+
+    def lines(self, result: SuiteResult) -> list[str]:
+        """One line per episode."""
+        labels = {text: name for name, text in result.policies.items()}
+        return (lines_by_role if self.by_role else lines_of)(result.episodes, labels)
 
 
 TABLES = {
@@ -58,6 +66,7 @@ TABLES = {
         ("orca", "avocado", "sarl_multi_robot", "rl_rvo", "ppo", "ppo_freeze", "footprint_orca"),
         ("robots-5", "robots-10"),
     ),
+    "mixed_v2": Table("mixed_v2", ("one-people", "half-orca"), again=("one-rl_rvo", "half-people"), by_role=True),
 }
 _METRICS = ("time_to_goal", "velocity_avg", "path_length", "min_clearance")
 
@@ -122,10 +131,13 @@ def main(name: str, folder: str | None = None) -> None:
     with nullcontext(folder) if folder else tempfile.TemporaryDirectory() as place:
         result = run_plan(TABLES[name].plan(), Path(place), resume=folder is not None)
     assert isinstance(result, SuiteResult)
-    labels = {text: name for name, text in result.policies.items()}
-    head = ",".join(("scenario", "policy", "seed", "outcome", "steps", *_METRICS))
-    episodes = [head, *lines_of(result.episodes, labels)]
+    head = HEAD if TABLES[name].by_role else ("scenario", "policy", "seed", "outcome", "steps", *_METRICS)
+    episodes = [",".join(head), *TABLES[name].lines(result)]
     (FOLDER / f"{name}.csv").write_text("\n".join(episodes) + "\n", encoding="utf-8")
+    if TABLES[name].by_role:
+        text = page(list(csv.DictReader(episodes)), TABLES[name].plan())
+        (PAGES / f"{name}.md").write_text(text, encoding="utf-8")
+        return
     more = "\n".join(changes(name, counted(csv.DictReader(episodes))))
     (PAGES / f"{name}.md").write_text(f"{markdown(result)}\n{more}\n", encoding="utf-8")
 
