@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from irsim.policies.policy import Policy
     from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 
-__all__ = ["MARKDOWN", "PAGE", "REPLAYS", "TABLE", "Report", "write_report"]
+__all__ = ["MARKDOWN", "PAGE", "REPLAYS", "TABLE", "Report", "record_episode", "write_report"]
 
 MARKDOWN, PAGE, REPLAYS = "results.md", "results.html", "replays"
 """Names of the files, and of the folder of the replays."""
@@ -108,15 +108,35 @@ def _replay(scenario: PlannedScenario, one: EpisodeRow, plan: Plan, policy: Poli
     """Run an episode again, and write its replay; False if a map cannot be copied."""
     target.parent.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as place:
+        if not record_episode(scenario, one.seed, plan, policy, Path(place) / "run", steps=one.steps):
+            return False
+        replay(Path(place) / "run", target)
+    return True
+
+
+def record_episode(
+    scenario: PlannedScenario, seed: int, plan: Plan, policy: Policy, target: Path, *, steps: int | None = None
+) -> bool:
+    """Run an episode of a plan again, and record it into a new folder; False if a map cannot be copied.
+
+    Args:
+        scenario: Its scenario.
+        seed: Its seed.
+        plan: The plan.
+        policy: The policy that drives its robots.
+        target: The folder.
+        steps: Number of steps after which it ends; default: as the plan says.
+    """
+    until = plan.until if steps is None else "done"
+    with tempfile.TemporaryDirectory() as place:
         try:
             source = {"text": scenario.text} if scenario.folder is None else {"path": _copied(scenario, Path(place))}
             run(
-                **source, seed=one.seed, steps=one.steps, strict=plan.strict, imports=plan.imports,
-                record=Path(place) / "run", policy=policy, perturb=plan.perturb or None,
+                **source, seed=seed, steps=plan.steps if steps is None else steps, strict=plan.strict,
+                imports=plan.imports, record=target, policy=policy, perturb=plan.perturb or None, until=until,
             )  # fmt: skip
         except ScenarioError:
             return False
-        replay(Path(place) / "run", target)
     return True
 
 

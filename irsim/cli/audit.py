@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
+from irsim.api.audit_submission import audit_all
 from irsim.cli.guard import FAILED
 from irsim.cli.options import Json
 from irsim.cli.output import console, print_json
 from irsim.common.text import clean
-from irsim.runs.audit.audit import audit_runs
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from irsim.results.audit import AuditFinding, RunAudit
+    from irsim.results.audit import AuditFinding, RunAudit, SubmissionAudit
 
 __all__ = ["audit"]
 
@@ -29,7 +29,7 @@ def audit(
         list[str],
         typer.Argument(
             metavar="RUN...",
-            help="Id, folder or a file of a recorded run, or 'last'; several are audited one by one.",
+            help="Id, folder or a file of a recorded run, or 'last', or the folder of a submission. Each is audited.",
             show_default=False,
         ),
     ],
@@ -40,14 +40,16 @@ def audit(
     Contacts are recomputed within steps, too, along the twist of each object. The exit code is 1 if anything differs
     from the record, or if a run cannot be read.
     """
-    result = audit_runs(runs)
+    result = audit_all(runs)
     if json_output:
         print_json(result)
     else:
         out = console()
         for run in result.runs:
             _show(run, out)
-        if len(result.runs) > 1:
+        for submission in result.submissions:
+            _show_submission(submission, out)
+        if len(result.runs) + len(result.submissions) > 1:
             out.print(result.summary, soft_wrap=True)
     if not result.equal:
         raise typer.Exit(FAILED)
@@ -91,6 +93,30 @@ def _show(run: RunAudit, out: Console) -> None:
         style="dim",
         soft_wrap=True,
     )
+
+
+def _show_submission(submission: SubmissionAudit, out: Console) -> None:
+    out.print(clean(submission.summary, 600), soft_wrap=True, style="green" if submission.equal else "bold red")
+    for problem in submission.problems[:MAX_ROWS]:
+        given = "" if problem.given is None else f": given {clean(str(problem.given), 100)}"
+        known = "" if problem.allowed is None else f", recomputed {clean(str(problem.allowed), 100)}"
+        line = f"  {problem.code}: {clean(problem.path, 200)}: {clean(problem.message, 400)}{given}{known}"
+        out.print(line, soft_wrap=True)
+    if submission.problem_count > MAX_ROWS:
+        out.print(f"  ... and {submission.problem_count - MAX_ROWS} more problems")
+    if submission.problems:
+        out.print(f"  fix: {clean(submission.problems[0].fix or '', 300)}", soft_wrap=True)
+    if not submission.leaderboard:
+        return
+    table = Table(title=submission.leaderboard[0].suite, box=None, pad_edge=False, header_style="dim")
+    for heading in ("scenes", "policy", "episodes", "success", "95 %", "collision", "time s"):
+        table.add_column(heading, overflow="fold")
+    for row in submission.leaderboard:
+        ends = "-" if row.low is None or row.high is None else f"{row.low:.1%} to {row.high:.1%}"
+        time = "-" if row.time_to_goal is None else f"{row.time_to_goal:.2f}"
+        cells = (str(row.episodes), f"{row.success:.1%}", ends, f"{row.collision:.1%}", time)
+        table.add_row(clean(row.scenes, 60), clean(row.policy, 40), *cells)
+    out.print(table)
 
 
 def print_finding(finding: AuditFinding, out: Console) -> None:

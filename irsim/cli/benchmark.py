@@ -118,6 +118,15 @@ def benchmark(
             help="Folder for the episodes and the result. A suite has .irsim/benchmarks/NAME-HASH by default.",
         ),
     ] = None,
+    submission: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            show_default=False,
+            help="Like -o, and make the folder of a suite a submission that others can check with irsim audit: rows, "
+            "recorded episodes of a sample, versions and hashes.",
+        ),
+    ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the interrupted benchmark in -o, else with the last one here.")
     ] = False,
@@ -151,11 +160,14 @@ def benchmark(
         raise InputError("--json and --csv cannot be combined", "give one of them")
     if policies is not None and behaviors is not None:
         raise InputError("--policies and --behaviors are two names of one option", "give only --policies")
+    if submission is not None and output is not None:
+        raise InputError("--submission and -o both name the folder", "give only --submission")
     import_user_modules(imports)
     wanted = Wanted(
         files=files or [], policies=behaviors if policies is None else policies, seeds=seeds, perturb=perturb or [],
         steps=steps, strict=strict, imports=imports or [], workers=workers, cluster=cluster, max_objects=max_objects,
-        folder=output, resume=resume, full=full, protocols=protocols or [], scenarios=scenarios or [],
+        folder=submission or output, resume=resume, full=full, protocols=protocols or [], scenarios=scenarios or [],
+        submit=submission is not None,
     )  # fmt: skip
     result = run_benchmark(wanted)
     if json_output:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from irsim.api.benchmark_report import Report, write_report
+from irsim.api.submission import write_submission
 from irsim.benchmarks import DEFAULT_SEEDS, benchmark
 from irsim.benchmarks.plan import file_plan
 from irsim.benchmarks.seeds import seeds_from
@@ -45,6 +46,7 @@ class Wanted:
     full: bool
     protocols: Sequence[str]
     scenarios: Sequence[str]
+    submit: bool = False
 
 
 def run_benchmark(wanted: Wanted) -> BenchmarkResult:
@@ -56,14 +58,21 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
     suites = [word for word in wanted.files if is_suite(word)]
     if suites and len(wanted.files) > 1:
         raise InputError(f"{suites[0]} is a suite, which is run alone", "give one suite, or scenario files")
-    of_suite = {"--full": wanted.full, "--protocol": wanted.protocols, "--scenario": wanted.scenarios}
+    of_suite = {
+        "--submission": wanted.submit and bool(wanted.files),
+        "--full": wanted.full,
+        "--protocol": wanted.protocols,
+        "--scenario": wanted.scenarios,
+    }
     odd = [name for name, value in of_suite.items() if value and not suites]
     if odd:
         raise InputError(f"{odd[0]} belongs to a suite", "name a suite; irsim suites lists them")
-    limits, reports = limits_for(wanted.max_objects), list[Report]()
+    limits, reports, manifests = limits_for(wanted.max_objects), list[Report](), list[Path]()
 
     def finish(result: BenchmarkResult, folder: Path) -> None:
         reports.append(write_report(result, folder))
+        if wanted.submit:
+            manifests.append(write_submission(result, folder))
 
     with progress("simulating") as report:
         if not wanted.files:
@@ -98,6 +107,8 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
         out.print(f"episodes, result and report: {written.page}", soft_wrap=True)
         for note in written.notes:
             out.print(f"note: {note}", soft_wrap=True)
+    for manifest in manifests:
+        out.print(f"submission: {manifest}; check it: irsim audit {manifest.parent}", soft_wrap=True)
     return result
 
 

@@ -9,7 +9,16 @@ from pydantic import Field
 from irsim.results.base import Result
 from irsim.results.findings import Finding
 
-__all__ = ["AuditCheck", "AuditFinding", "AuditResult", "AuditedRobot", "NearContact", "RunAudit"]
+__all__ = [
+    "AuditCheck",
+    "AuditFinding",
+    "AuditResult",
+    "AuditedRobot",
+    "LeaderboardRow",
+    "NearContact",
+    "RunAudit",
+    "SubmissionAudit",
+]
 
 Value = float | int | bool | str | list[float | None] | None
 """A recorded or recomputed value."""
@@ -77,6 +86,8 @@ class AuditedRobot(Result):
     """Time of its first arrival [s]; None if it did not arrive."""
     path_length: float
     """Distance that it travelled in the whole run [m]."""
+    path_to_goal: float
+    """Distance that it travelled until it arrived, or to the end [m]."""
     mean_speed: float | None
     """Distance travelled until it arrived, divided by the time that took [m/s]."""
     min_clearance: float | None
@@ -126,6 +137,52 @@ class RunAudit(Result):
     """Version of irsim that recorded the run."""
 
 
+class LeaderboardRow(Result):
+    """A row of a leaderboard: one policy under one summary of a suite."""
+
+    suite: str
+    """Name, version and hash of the suite."""
+    scenes: str
+    """The scenarios that are summarised."""
+    policy: str
+    """The policy."""
+    episodes: int
+    """Number of episodes."""
+    success: float
+    """Share of successful episodes."""
+    low: float | None
+    """Lower end of its 95 % interval; None where nothing is random."""
+    high: float | None
+    """Upper end of it."""
+    collision: float
+    """Share of episodes with a collision."""
+    time_to_goal: float | None
+    """Mean time of robots that arrived [s]."""
+
+
+class SubmissionAudit(Result):
+    """The result of ``irsim audit`` for a submission."""
+
+    folder: str
+    """The folder, as it was named."""
+    equal: bool
+    """Whether nothing was found."""
+    summary: str
+    """One sentence."""
+    episodes: int = 0
+    """Number of rows."""
+    sampled: int = 0
+    """Number of recorded episodes that were audited and compared with their rows."""
+    problems: list[Finding] = Field(default_factory=list)
+    """Everything that is wrong, the first 50, each with the file that it is about."""
+    problem_count: int = 0
+    """Number of problems."""
+    runs: list[RunAudit] = Field(default_factory=list)
+    """The audits of the recorded episodes that have differences."""
+    leaderboard: list[LeaderboardRow] = Field(default_factory=list)
+    """The rows of a leaderboard, recomputed from the rows of the submission; empty if there are problems."""
+
+
 class AuditResult(Result):
     """The result of ``irsim audit``."""
 
@@ -135,3 +192,5 @@ class AuditResult(Result):
     """One sentence."""
     runs: list[RunAudit]
     """The recorded runs, in the order in which they were named."""
+    submissions: list[SubmissionAudit] = Field(default_factory=list)
+    """The submissions, in the order in which they were named."""

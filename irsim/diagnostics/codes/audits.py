@@ -33,6 +33,27 @@ AUDITS: dict[str, Code] = {
     "audit-metric": Code(
         "metric differs", "A metric that is computed from the recorded poses is not the one of result.json."
     ),
+    "bad-submission": Code(
+        "submission cannot be used",
+        "The manifest, the plan or the result of a submission is damaged, or one contradicts another.",
+    ),
+    "submission-file": Code(
+        "file of a submission differs",
+        "A file is missing, is not listed in the manifest, is a link, or has another SHA-256 than the manifest says.",
+    ),
+    "submission-rows": Code(
+        "episodes are not those of the suite",
+        "Each scenario, policy and seed must have exactly one row, and the scenarios must be those of the suite.",
+    ),
+    "submission-table": Code(
+        "table does not follow from the rows",
+        "Rates, means, intervals, pairs or ranks are not the ones that are recomputed from the rows of the episodes.",
+    ),
+    "submission-run": Code(
+        "recorded episode contradicts its row",
+        "The sample is not the one that the hash of the plan decides, or the audit of a recorded episode differs from "
+        "its row or from its own files.",
+    ),
     "record-incomplete": Code(
         "record lacks what an audit needs",
         "The run was recorded by a version that kept no outlines and limits; record it again with this one.",

@@ -139,6 +139,7 @@ def audited_robots(artifact: Artifact, shapes: Sequence[Shape]) -> list[AuditedR
                 outcome=outcome,
                 time_to_goal=None if reached is None else reached.time,
                 path_length=travelled,
+                path_to_goal=until,
                 mean_speed=until / lasted if lasted > 0 else None,
                 min_clearance=clearance,
                 nearest=nearest,

@@ -1,0 +1,110 @@
+"""The manifest of a submission, and which of its episodes are recorded."""
+
+from __future__ import annotations
+
+import platform
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+import irsim._core as core
+from irsim.benchmarks.plan import Plan
+from irsim.common.hashing import digest, file_digest
+from irsim.common.installed import version
+
+__all__ = ["MANIFEST", "ROWS", "RUNS", "SAMPLED", "Manifest", "SampledEpisode", "manifest_of", "sampled_episodes"]
+
+MANIFEST, ROWS, RUNS = "submission.json", "rows.csv", "runs"
+"""Names of the manifest, of the table of episodes, and of the folder of recorded episodes."""
+SAMPLED = 20
+"""Number of episodes that are recorded; of a smaller benchmark all are."""
+Text = Annotated[str, Field(max_length=4096)]
+
+
+class SampledEpisode(BaseModel):
+    """An episode that is recorded."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    scenario: Text
+    policy: Text
+    seed: Annotated[int, Field(ge=0, lt=2**64)]
+    folder: Text
+
+
+class Manifest(BaseModel):
+    """``submission.json``: versions, hashes, the sample, and the digest of every other file.
+
+    Attributes:
+        format: Version of this layout.
+        suite, suite_version, suite_hash: The suite.
+        plan_hash: Hash of everything that decides the numbers; it also decides the sample.
+        irsim, python, numpy, platform: Versions of the programs that ran it.
+        engine: SHA-256 of the compiled engine.
+        policies: Name of each policy -> SHA-256 of its file, or of its text where it has no file.
+        seeds: The seeds.
+        episodes: Number of episodes.
+        sample: The recorded episodes: of all episodes, ordered by the SHA-256 of ``PLAN_HASH:SCENARIO:POLICY:SEED``,
+            the first 20.
+        files: Path of each file -> its SHA-256.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    format: Annotated[int, Field(ge=1, le=1)] = 1
+    suite: Text
+    suite_version: int
+    suite_hash: Text
+    plan_hash: Text
+    irsim: Text
+    python: Text
+    numpy: Text
+    platform: Text
+    engine: Text
+    policies: dict[Text, Text]
+    seeds: list[int]
+    episodes: int
+    sample: list[SampledEpisode]
+    files: dict[Text, Text]
+
+
+def sampled_episodes(plan_hash: str, episodes: list[tuple[str, str, int]]) -> list[tuple[str, str, int]]:
+    """The episodes that a submission records, which its author cannot choose.
+
+    Args:
+        plan_hash: Hash of the plan.
+        episodes: Scenario, name of the policy and seed of each episode.
+    """
+    order = sorted(episodes, key=lambda one: digest(f"{plan_hash}:{one[0]}:{one[1]}:{one[2]}"))
+    return order[:SAMPLED]
+
+
+def manifest_of(plan: Plan, folder: Path, episodes: int, sample: list[SampledEpisode], files: list[str]) -> Manifest:
+    """The manifest of the files in a folder.
+
+    Args:
+        plan: The plan that was run.
+        folder: The folder.
+        episodes: Number of episodes.
+        sample: The recorded episodes.
+        files: Paths of all other files, relative to the folder.
+    """
+    assert plan.suite is not None
+    return Manifest(
+        suite=plan.suite.suite,
+        suite_version=plan.suite.version,
+        suite_hash=plan.suite_hash,
+        plan_hash=plan.hash,
+        irsim=version(),
+        python=platform.python_version(),
+        numpy=np.__version__,
+        platform=platform.platform(),
+        engine=file_digest(Path(str(core.__file__))),
+        policies={name: plan.digests.get(name, digest(text)) for name, text in plan.policies.items()},
+        seeds=plan.seeds,
+        episodes=episodes,
+        sample=sample,
+        files={name: file_digest(folder / name) for name in sorted(files)},
+    )
