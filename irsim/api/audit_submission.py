@@ -57,7 +57,7 @@ def audit_all(names: Sequence[str | Path]) -> AuditResult:
 
 
 class _Problems:
-    """What is wrong with a submission."""
+    """The problems of a submission."""
 
     def __init__(self) -> None:
         self.listed = list[Finding]()
@@ -252,7 +252,7 @@ def _check_table(folder: Path, plan: Plan, result: SuiteResult, problems: _Probl
     for key in ("rows", "pairs", "ranks", "incidents", "notes"):
         given, known = (one.model_dump(include={key})[key] for one in (result, again))
         if not _same(given, known):
-            problems.add("submission-table", RESULTS, f"its {key} are not those that follow from its episodes")
+            problems.add("submission-table", RESULTS, f"its {key} do not follow from its episodes")
     if read_bytes(folder / ROWS, _MAX_FILE_BYTES, follow=False) != table.encode():
         problems.add("submission-table", ROWS, f"it has other episodes or numbers than {RESULTS}")
 

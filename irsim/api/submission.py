@@ -59,7 +59,7 @@ def write_submission(result: BenchmarkResult, folder: Path) -> Path:
 
 
 def _record(plan: Plan, folder: Path, chosen: list[tuple[str, str, int]]) -> list[SampledEpisode]:
-    """Record some episodes; those that an interrupted submission has left stay."""
+    """Record some episodes; an episode that an interrupted submission has recorded stays."""
     scenarios = {scenario.name: scenario for scenario in plan.scenarios}
     policies = {label_of(policy): policy for policy in plan.opened()}
     (folder / RUNS).mkdir(exist_ok=True)

@@ -42,8 +42,8 @@ AUDITS: dict[str, Code] = {
         "A file is missing, is not listed in the manifest, is a link, or has another SHA-256 than the manifest says.",
     ),
     "submission-rows": Code(
-        "episodes are not those of the suite",
-        "Each scenario, policy and seed must have exactly one row, and the scenarios must be those of the suite.",
+        "episodes do not fit the suite",
+        "Each scenario, policy and seed must have exactly one row, and the suite must have these scenarios.",
     ),
     "submission-table": Code(
         "table does not follow from the rows",
