@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tests.benchmarks.pedestrians import fitted, human, robot
+from tests.benchmarks.pedestrians import corridor, fitted, human, robot
 
 PAGE = Path(__file__).resolve().parents[3] / "skills" / "irsim-benchmark" / "results" / "pedestrians.md"
 TEXT = Path(__file__).with_name("page.md")
@@ -17,7 +17,12 @@ TEXT = Path(__file__).with_name("page.md")
 def page(data: Path) -> str:
     """The whole page."""
     text = TEXT.read_text(encoding="utf-8")
-    parts = {**human.parts(human.compare(data)), **fitted.parts(data), **robot.parts(*robot.measure(data))}
+    parts = {
+        **human.parts(human.compare(data)),
+        **fitted.parts(data),
+        **corridor.parts(),
+        **robot.parts(*robot.measure(data)),
+    }
     return text.format(**parts)
 
 
