@@ -24,7 +24,7 @@ from irsim.benchmarks.together import run_together
 from irsim.common.hashing import digest
 from irsim.common.installed import version
 from irsim.common.text import clean
-from irsim.policies.catalog import file_of, files_beside, with_file
+from irsim.policies.catalog import file_of, files_beside, has_inner_files, with_file
 from irsim.scenario.behavior_override import check_behavior_name
 
 __all__ = ["ClusterError", "run_on_cluster"]
@@ -217,6 +217,9 @@ def _shared(ray: Any, jobs: Sequence[Job]) -> dict[str, Any]:
         if job.local is not None:
             what = f"policy {job.local.name!r} exists only in this program, so a cluster cannot run it"
             raise ClusterError("cluster-differs", what, "make it a plug-in or a file, or run without the cluster")
+        if job.policy is not None and has_inner_files(job.policy):
+            what = "files that are named within a policy are not sent to a cluster"
+            raise ClusterError("cluster-differs", what, "run without the cluster")
         network = None if job.policy is None else file_of(job.policy)
         beside = [] if network is None else [path for path in files_beside(network) if path.is_file()]
         job_data.append(

@@ -12,7 +12,7 @@ from irsim.benchmarks.suite_plan import suite_plan
 from irsim.lookup.answer import Answer, Key
 from irsim.policies.converters.convert import CONVERTERS
 from irsim.policies.description import PolicyInfo, describe_policy, list_policies
-from irsim.policies.registry import POLICIES
+from irsim.policies.registry import MIXED, POLICIES
 from irsim.policies.trained import trained_policies
 from irsim.scenario.behavior_override import behavior_text
 from irsim.scenario.perturbation import Perturbation
@@ -27,7 +27,7 @@ def policy_answer(topic: str) -> Answer | None:
         topic: The word in question: ``sarl``, ``RL-RVO``, or ``ppo``, as a suite calls another one.
     """
     name = topic.strip().lower().replace("-", "_").replace(" ", "_")
-    known = {*trained_policies(), *POLICIES.names()}
+    known = {*trained_policies(), MIXED, *POLICIES.names()}
     if name in known:
         return _policy(name, [])
     for suite in (load_suite(each)[0] for each in SUITES.names()):

@@ -34,6 +34,7 @@ __all__ = [
     "behavior_names",
     "file_of",
     "files_beside",
+    "has_inner_files",
     "is_installed",
     "is_network",
     "names_file",
@@ -180,6 +181,20 @@ def names_file(text: str) -> bool:
         InputError: The text is not a policy.
     """
     return file_of(text) is not None
+
+
+def has_inner_files(text: str) -> bool:
+    """Whether an option of a policy names a file: one of several policies, or brought weights.
+
+    Raises:
+        InputError: The text is not a policy.
+    """
+    name, options = _parsed(text)
+    parts = options.get("policies") if name == MIXED else None
+    if isinstance(parts, Mapping):
+        texts = [behavior_text(one) for one in parts.values() if isinstance(one, (str, Mapping))]
+        return any(names_file(one) or has_inner_files(one) for one in texts)
+    return name == RL_RVO_AUTHORS and "weights" in options
 
 
 def file_of(text: str) -> Path | None:

@@ -121,8 +121,9 @@ def _random() -> PolicyInfo:
 
 def _mixed() -> PolicyInfo:
     about, options = _about(MixedPolicy), _options(MixedPolicy)
+    parts = "what its parts say"
     return PolicyInfo(
-        MIXED, "built-in", about, "its parts say", [], ["any"], options=options, meanings=_arguments(MixedPolicy)
+        MIXED, "built-in", about, parts, [parts], [parts], options=options, meanings=_arguments(MixedPolicy)
     )
 
 

@@ -22,13 +22,14 @@ _FIX = f"write {{name: {MIXED}, policies: {{crowd: orca, others: dash}}}}"
 
 
 class MixedPolicy(Policy):
-    """Several policies share the robots: each drives those of one selection, by their name or tag.
+    """Several policies share the robots: each drives those with a name or tag, and benchmarks have metrics by role.
 
     The first selection that has a robot's name or one of its tags counts; `others` is every robot that no selection
-    has. Without `others` such robots keep the behavior of the scenario. Metrics by role show each selection alone.
+    has. Without `others` such robots keep the behavior of the scenario.
 
     Args:
-        policies: Selection of robots -> policy: a name, a file, or a name with options.
+        policies: Name or tag of robots -> policy: a name, a file, or a name with options, as in ``{crowd: orca, others:
+            rl_rvo}``. The first that fits counts; `others` are the rest, who otherwise keep their own behavior.
 
     Raises:
         ArgumentError: There is no selection, or a policy is itself one of several.

@@ -12,6 +12,7 @@ from irsim.benchmarks.suite import Suite, SuiteError
 from irsim.benchmarks.suite_plan import suite_plan, suite_policy
 from irsim.diagnostics.errors import ArgumentError, InputError, PolicyError
 from irsim.policies import FunctionPolicy, Observations, open_policy
+from irsim.policies.catalog import has_inner_files, is_network
 from irsim.policies.mixed import MixedPolicy
 
 ROBOTS = """
@@ -167,3 +168,18 @@ def test_a_suite_whose_robots_do_not_exist_is_refused_with_the_nearest_tag() -> 
     with pytest.raises(SuiteError, match="no robot has the name or tag 'prob', did you mean probe") as caught:
         suite_plan(suite_of({"prob": "compared", "others": "dash"}))
     assert caught.value.diagnostics[0].path == ("scenarios", 0, "policies", "prob")
+
+
+def test_files_within_a_policy_are_found() -> None:
+    mixed = "{name: mixed, policies: {probe: PART, others: orca}}"
+    for part, inner, network in (
+        ("dash", False, False),
+        ("rl_rvo", False, True),
+        ("mine.npz", True, True),
+        ("{name: mine.npz, decision_dt: 0.2}", True, True),
+        ("rl_rvo_authors", False, True),
+        ("{name: rl_rvo_authors, weights: pre_train.pt}", True, True),
+    ):
+        text = mixed.replace("PART", part)
+        assert (part, has_inner_files(text), is_network(text)) == (part, inner, network)
+    assert not has_inner_files("mine.npz")
