@@ -62,6 +62,14 @@ def test_a_bottleneck_is_as_wide_as_its_gap(material: Material, width: float) ->
         assert observation.marks
 
 
+def test_the_only_way_is_closed_with_its_bottleneck() -> None:
+    only = {"of": "robots", "only": True}
+    assert seen(scene(WALLS, *DOOR), "bottleneck", only).passed
+    two_doors = scene(WALLS, box(4.9, 0, 5.1, 1), box(4.9, 1.9, 5.1, 4), box(4.9, 4.9, 5.1, 6))
+    assert not seen(two_doors, "bottleneck", only).passed
+    assert seen(two_doors, "bottleneck", {"of": "robots", "width": {"eq": 0.9, "tol": 0.02}}).passed
+
+
 def test_nobody_has_no_bottleneck() -> None:
     material = scene(WALLS, *DOOR)
     assert not seen(material, "bottleneck", {"of": "statics", "width": {"ge": 0}}).passed

@@ -289,6 +289,24 @@ def test_the_schema_of_cases_is_up_to_date() -> None:
     assert Path("schema/eval-case.schema.json").read_text(encoding="utf-8") == schema_text()
 
 
+@pytest.mark.parametrize(
+    ("reply", "there"),
+    [
+        ("The level is scenario.yaml.", True),
+        ("", True),
+        ("rvo.yaml is the same with RVO.", False),
+        ("It is in levels/rvo.yaml; I did not run it.", False),
+        ("I can save it as rvo.yaml. Or I'll write slow.yml, if you like!", True),
+        ("I will tell more. See rvo.yaml.", False),
+    ],
+)
+def test_files_that_a_reply_names_are_there(reply: str, there: bool) -> None:
+    verdict = grade(
+        made_up({"id": "a-name", "says": {"files_there": True}}), Answer("a", {"scenario.yaml": RIGHT}, reply)
+    )
+    assert ("a-name" not in failed(verdict)) == there
+
+
 FAR = {"arrive": {"of": "robots", "share": 0}, "says": {"any_of": ["not arrive"]}}
 
 

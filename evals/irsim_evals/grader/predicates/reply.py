@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -45,6 +46,8 @@ _MEASURE = re.compile(
     re.IGNORECASE,
 )
 _BEFORE = re.compile(rf"{_NUMBER}\s*(m/s|km/h|cm|mm|m)\s+(radius|range|speed|diameter)\b", re.IGNORECASE)
+_LATER = r"[^.!?;]*(?:\b(?:will|would|can|could|once)\b|'ll\b)(?:[^.!?;]|\.(?=\w))*"
+"""A sentence about what is not done yet."""
 _MAX_QUOTED = 120
 """Number of characters of a reply that an observation quotes."""
 _STATED = re.compile(r"(?<![\w.,])(\d+(?:[.,]\d+)?)\s*(km/h|m/s|cm|mm|m|s(?:e[cgk]\w*)?|°|deg|rad)?(?![\w])")
@@ -158,6 +161,8 @@ class Says(AnswerPredicate):
     """Name of a point that the reply makes → regular expressions, one of which occurs."""
     at_least: Counted | None = None
     """How many of the points it makes; default: all."""
+    files_there: bool = False
+    """Whether every YAML file that it names must be there, but for those that it only would or will write."""
     about: str = ""
     """Its meaning in words, for the evidence."""
     turn: Counted | None = None
@@ -171,6 +176,9 @@ class Says(AnswerPredicate):
         text = re.sub(r"\s+", " ", reply)
         missing = [pattern for pattern in self.all_of if not occurs([pattern], text)]
         unwanted = [pattern for pattern in self.none_of if occurs([pattern], text)]
+        if self.files_there:
+            named = re.findall(r"[\w-][\w.-]*\.ya?ml\b", re.sub(_LATER, "", text, flags=re.IGNORECASE))
+            unwanted += sorted({*named} - {Path(name).name for name in material.answer.files})
         lacking = bool(self.any_of) and not occurs(self.any_of, text)
         made = [name for name, ways in self.points.items() if occurs(ways, text)]
         asked = self.all_of or self.any_of or self.points  # an empty reply holds no unwanted word

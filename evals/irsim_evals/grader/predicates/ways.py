@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 import shapely
@@ -165,19 +165,30 @@ class Bottleneck(OfBodies, ScenePredicate):
     goals, where it goes the widest way. How close it stands to a wall at its start or at a goal does not matter, and
     the edge of the world counts as a wall. An empty selection fails."""
 
-    width: Match
+    width: Match = Match(ge=0)
     """Accepted widths of the narrowest place [m]; 0 where there is no way."""
+    only: bool = False
+    """Whether there must be no way any more once this place is closed."""
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure the gaps."""
         bodies = [body for body in material.bodies(scene, self.of) if body.goals]
-        expected = f"the narrowest place on the way of {self.of}: {self.width.words()} m wide"
+        expected = f"the {'only' * self.only or 'narrowest'} place on the way of {self.of}: {self.width.words()} m wide"
         places = [(body, _narrowest(scene, body)) for body in bodies]
-        wrong = [(body, place) for body, place in places if not matches(self.width, place.width, "length")]
+        wrong = [
+            pair
+            for pair in places
+            if not (matches(self.width, pair[1].width, "length") and self._is_only(scene, *pair))
+        ]
         marks = [Mark(points=[list(place.place)], text=f"{place.width:.2f} m") for _, place in wrong]
         words, odd = ([(body, f"{show(place.width)} m at {show(list(place.place))}") for body, place in pairs]
                       for pairs in (places, wrong))  # fmt: skip
         return judged(expected, words, odd, "goal", marks=marks)
+
+    def _is_only(self, scene: GradedScene, body: GradedBody, gap: Gap) -> bool:
+        """Whether there is no way to the last goal once the gap is closed, where that is asked for."""
+        (x, y), plug = body.goals[-1][:2], (*gap.place, 0.6 * gap.width)
+        return not self.only or not scene.is_reachable(body.pose[:2], (x, y), disc_radius(body), (plug,))
 
 
 @register("before")
@@ -211,11 +222,9 @@ class Before(OfBodies, EpisodePredicate):
 
 def _narrowest(scene: GradedScene, body: GradedBody) -> Gap:
     """The narrowest place on the widest way of a body over its goals."""
-    key = ("narrowest", body.index)
-    if key not in scene.kept:
-        scene.kept[key] = _measured(scene, body)
-    gap: Gap = scene.kept[key]
-    return gap
+    if (body.index, "narrowest") not in scene.kept:
+        scene.kept[body.index, "narrowest"] = _measured(scene, body)
+    return cast(Gap, scene.kept[body.index, "narrowest"])
 
 
 def _measured(scene: GradedScene, body: GradedBody) -> Gap:

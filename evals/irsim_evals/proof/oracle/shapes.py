@@ -14,8 +14,6 @@ __all__ = ["Point", "Thing", "blocked", "distance_between", "gets_there", "to_po
 Point = tuple[float, float]
 _QUADRANT = 32
 """Sides of a quarter of a disc."""
-_SLACK = 1e-6
-"""Added to a reach, which is rounded [m]."""
 
 
 class Thing:
@@ -41,7 +39,7 @@ class Thing:
     @cached_property
     def reach(self) -> float:
         """Distance of its outline from its position, at most [m]."""
-        return self.radius or max(math.dist(corner, self.at[:2]) for corner in self.view.vertices.T) + _SLACK
+        return self.radius or max(math.dist(corner, self.at[:2]) for corner in self.view.vertices.T) + 1e-6
 
     @property
     def outline(self) -> Any:
