@@ -21,8 +21,10 @@ Touch = Literal["no", "perhaps", "yes"]
 """Whether two bodies touch; ``perhaps``: within the tolerance."""
 _SMALLEST_SHARE = 2.0**-24
 """Length of the intervals of a step that are not divided further."""
-_MAX_LOOKS = 20_000
+_MAX_LOOKS = 1000
 """Number of poses within one step at which one pair is looked at."""
+_MAX_ALL_LOOKS = 500_000
+"""Number of such poses in a run, beyond which passages are not resolved."""
 _SAMPLES = 48
 """Number of poses after a first contact at which it is looked whether the two overlap."""
 _BLOCK_NUMBERS = 4_000_000
@@ -80,7 +82,7 @@ class Encounters:
         self._placed = dict[tuple[int, int], list[Placed]]()
         self._touch = dict[tuple[int, int, int], tuple[Touch, float]]()
         self.unseen = 0.0
-        self.unresolved = 0
+        self.unresolved = self._looks = 0
 
     def all(self) -> Iterator[Encounter]:
         """The encounters, step by step."""
@@ -190,6 +192,7 @@ class Encounters:
         """When two bodies come within the tolerance of each other, as a share of a step, and the smallest gap."""
         speed = self.strides.speed(row, one, other, (self._reach(one), self._reach(other)))
         least, looks = min(begin, end), 0
+        most = max(1, min(_MAX_LOOKS, _MAX_ALL_LOOKS - self._looks))
         pending = [(0.0, 1.0, begin, end)]
         while pending:
             start, stop, at_start, at_stop = pending.pop()
@@ -198,15 +201,16 @@ class Encounters:
             hidden = 0.5 * (speed * (stop - start) - at_start - at_stop)
             if hidden < -TOLERANCE_M:
                 continue
-            if stop - start <= _SMALLEST_SHARE or looks >= _MAX_LOOKS:
+            if stop - start <= _SMALLEST_SHARE or looks >= most:
                 self.unseen = max(self.unseen, hidden)
-                self.unresolved += looks >= _MAX_LOOKS and stop - start > _SMALLEST_SHARE
+                self.unresolved += looks >= most and stop - start > _SMALLEST_SHARE
                 if at_stop <= TOLERANCE_M:
                     return stop, min(least, at_stop)
                 continue
             middle = 0.5 * (start + stop)
             between = self.gap_at(row, one, other, middle)
             looks += 1
+            self._looks += 1
             least = min(least, between)
             pending += [(middle, stop, between, at_stop), (start, middle, at_start, between)]
         return (1.0, least) if end <= TOLERANCE_M else (None, least)

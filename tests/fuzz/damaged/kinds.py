@@ -14,6 +14,7 @@ import yaml
 from PIL import Image
 
 import irsim
+from irsim.api.audit_submission import audit_submission
 from irsim.benchmarks.log import Log, logged
 from irsim.benchmarks.plan import file_plan
 from irsim.benchmarks.stored import read_plan
@@ -38,7 +39,9 @@ from irsim.policies.converters.torch_files.reader import read_torch
 from irsim.policies.networks import save_network
 from irsim.policies.neupan import NeuPanPolicy
 from irsim.policies.process.messages import PeerError, answer, declaration
+from irsim.runs.audit.audit import audit_runs
 from irsim.runs.comparison import diff_runs
+from irsim.runs.files import RunError
 from irsim.runs.inspection import FIELDS, inspect_run
 from irsim.runs.reading import open_run
 from irsim.runs.replay.data import pack_run
@@ -107,6 +110,15 @@ def _run(name: str) -> Callable[[Path], Path]:
         return folder / "run" / name
 
     return make
+
+
+def _audit_run(file: Path, draw: random.Random) -> None:
+    for problem in audit_runs([file.parent]).runs[0].problems:
+        raise RunError(problem.code, problem.message)
+
+
+def _audit_submission(file: Path, draw: random.Random) -> None:
+    assert not audit_submission(file.parent).equal  # the files that it names are missing
 
 
 def _read_run(file: Path, draw: random.Random) -> None:
@@ -229,6 +241,10 @@ def _read_answer(file: Path, draw: random.Random) -> None:
         declaration(answer(file.read_bytes() if file.is_file() else b"", "hello"))
 
 
+_MANIFEST = """{"format": 1, "suite": "x", "suite_version": 1, "suite_hash": "a", "plan_hash": "b", "irsim": "0.1.0",
+ "python": "3.11", "numpy": "2.4", "platform": "any", "engine": "c", "policies": {"dash": "d"}, "seeds": [1],
+ "episodes": 1, "sample": [{"scenario": "a", "policy": "dash", "seed": 1, "folder": "runs/00"}],
+ "files": {"plan.json": "e", "results.json": "f", "runs/00/run.json": "a"}}"""
 _RUN_FILES = ("run.json", "resolved.json", "result.json", "scenario.yaml", "trace-0000.npz")
 KINDS: Mapping[str, Kind] = {
     "scenario": Kind(text("room.yaml", ROOM), _read_scenario),
@@ -247,6 +263,8 @@ KINDS: Mapping[str, Kind] = {
     "progress": Kind(_training("progress.jsonl"), lambda file, draw: RunFolder(file.parent).rounds()),
     "key-value": Kind(text("word", "0.5"), _read_words),
     **{f"run-{name.partition('.')[0]}": Kind(_run(name), _read_run) for name in _RUN_FILES},
+    **{f"audit-{name.partition('.')[0]}": Kind(_run(name), _audit_run) for name in _RUN_FILES},
+    "submission": Kind(text("submission.json", _MANIFEST), _audit_submission),
     "benchmark-log": Kind(_log, _read_log),
     "policy": Kind(made(lambda file: save_network(file, go_to_goal()), "net.npz"),
                    lambda file, draw: open_policy(str(file))),
