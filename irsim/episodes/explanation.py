@@ -71,7 +71,7 @@ def summary_message(
     Args:
         facts: The episode.
         robots: Results of its robots.
-        driven: The policy or behavior that drove all robots, in words; None if each had its own.
+        driven: The policy or behavior that drove robots, in words; None if each had its own.
         left: Objects that left the world.
         zones: Results of the zones.
         rounds: Message about robots that patrol or wander; None if there is nothing to say.
@@ -112,7 +112,7 @@ def summary_message(
         else f"explored {100 * share:.0f} % of the area of the world, insides of obstacles included",
         sights_message(facts.events),
     ]
-    return ("" if driven is None else f"with {driven} for all robots: ") + "; ".join(filter(None, parts))
+    return ("" if driven is None else f"with {driven}: ") + "; ".join(filter(None, parts))
 
 
 def _humans_in(facts: EpisodeFacts, contacts: Sequence[Event]) -> list[ObjectRecord]:

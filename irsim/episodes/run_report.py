@@ -308,11 +308,15 @@ def _lost_code(error: CodedError | None) -> Literal["bridge-lost", "policy-lost"
     return "bridge-lost" if error.code == "bridge-lost" else "policy-lost"
 
 
+_FOR_ALL = " for all robots"
+
+
 def _driven_by(plan: RunPlan) -> str | None:
-    """The policy or behavior that drives all robots instead of their own, in words; None if each has its own."""
+    """The policy or behavior that drives robots instead of their own, in words; None if each has its own."""
     if plan.policy_text is not None:
-        return f"policy {clean(plan.policy_text)}"
-    return None if plan.behavior is None else f"behavior {plan.behavior}"
+        shared = plan.policy is not None and plan.policy.parts
+        return f"policy {clean(plan.policy_text)}" + ("" if shared else _FOR_ALL)
+    return None if plan.behavior is None else f"behavior {plan.behavior}{_FOR_ALL}"
 
 
 def _without_repeats(scenario: ResolvedScenario, events: Sequence[Event]) -> list[Event]:

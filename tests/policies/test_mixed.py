@@ -183,3 +183,9 @@ def test_files_within_a_policy_are_found() -> None:
         text = mixed.replace("PART", part)
         assert (part, has_inner_files(text), is_network(text)) == (part, inner, network)
     assert not has_inner_files("mine.npz")
+
+
+def test_a_run_says_for_whom_its_policy_is() -> None:
+    shared = irsim.run(text=ROBOTS, seed=1, policy="{name: mixed, policies: {probe: rl_rvo, others: orca}}", steps=3)
+    assert "with policy {name: mixed, policies: {probe: rl_rvo, others: orca}}: " in shared.summary
+    assert "with policy rl_rvo for all robots: " in irsim.run(text=ROBOTS, seed=1, policy="rl_rvo", steps=3).summary
