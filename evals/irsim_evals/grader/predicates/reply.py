@@ -177,7 +177,7 @@ class Says(AnswerPredicate):
         missing = [pattern for pattern in self.all_of if not occurs([pattern], text)]
         unwanted = [pattern for pattern in self.none_of if occurs([pattern], text)]
         if self.files_there:
-            named = re.findall(r"[\w-][\w.-]*\.ya?ml\b", re.sub(_LATER, "", text, flags=re.IGNORECASE))
+            named = re.findall(r"(?a)[\w-][\w.-]*\.ya?ml\b", re.sub(_LATER, "", text, flags=re.IGNORECASE))
             unwanted += sorted({*named} - {Path(name).name for name in material.answer.files})
         lacking = bool(self.any_of) and not occurs(self.any_of, text)
         made = [name for name, ways in self.points.items() if occurs(ways, text)]
