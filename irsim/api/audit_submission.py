@@ -209,9 +209,9 @@ def _check_suite(plan: Plan, problems: _Problems) -> str:
     if own.suite_hash != plan.suite_hash:
         problems.add("submission-rows", PLAN, f"the suite is not {plan.suite.suite} of irsim {version()}",
                      given=plan.suite_hash, allowed=own.suite_hash)  # fmt: skip
-    texts = {scenario.name: scenario.text for scenario in own.scenarios}
+    scenes = {scenario.name: (scenario.text, scenario.policies) for scenario in own.scenarios}
     for scenario in plan.scenarios:
-        if texts.get(scenario.name) != scenario.text:
+        if scenes.get(scenario.name) != (scenario.text, scenario.policies):
             problems.add("submission-rows", PLAN, f"the suite has no such scenario {scenario.name}")
     if plan.until != own.until or plan.steps != own.steps or plan.perturb != own.perturb:
         problems.add("submission-rows", PLAN, "episodes end otherwise, or are perturbed otherwise, than in the suite")

@@ -11,6 +11,7 @@ from pathlib import Path
 from irsim.api.benchmark_report import record_episode
 from irsim.benchmarks.plan import Plan
 from irsim.benchmarks.policies import label_of
+from irsim.benchmarks.roles import shared_with
 from irsim.benchmarks.stored import EPISODES, PLAN, RESULTS, read_plan
 from irsim.benchmarks.submission import MANIFEST, ROWS, RUNS, SampledEpisode, manifest_of, sampled_episodes
 from irsim.benchmarks.summary import KEYS
@@ -71,7 +72,7 @@ def _record(plan: Plan, folder: Path, chosen: list[tuple[str, str, int]]) -> lis
             if target.exists() and any(target.iterdir()):
                 what = f"'{target}' holds a part of a recorded episode"
                 raise RunError("file-exists", what, "delete this folder, then give --resume")
-            policy = policies[plan.policies[name]]
+            policy = shared_with(policies[plan.policies[name]], plan.parts().get(scenario, {}))
             if not record_episode(scenarios[scenario], seed, plan, policy, target):
                 what = f"the episode {scenario}, {name}, seed {seed} cannot be recorded: its map cannot be copied"
                 raise RunError("file-access", what, "name maps relative to the file of the suite")

@@ -188,3 +188,12 @@ def test_the_command(written: Path, tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["benchmark", "x.yaml", "--submission", str(tmp_path / "new")])
     assert done.exit_code == 2
     assert "belongs to a suite" in done.output
+
+
+def test_policies_that_share_a_scene_are_recorded_as_they_were_compared(workspace: Path) -> None:
+    words = ["benchmark", "mixed_v2", "--policies", "avocado", "--scenario", "one-rl_rvo", "--seeds", "1"]
+    done = CliRunner().invoke(app, [*words, "--submission", "mine", "--workers", "1"])
+    assert done.exit_code == 0, done.output
+    result = audit_submission("mine")
+    assert result.equal, result.problems
+    assert result.sampled == 1
