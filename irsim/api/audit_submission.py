@@ -178,7 +178,7 @@ def _plan(folder: Path, manifest: Manifest, problems: _Problems) -> Plan | None:
         "suite_hash": (manifest.suite_hash, plan.suite_hash),
         "irsim": (manifest.irsim, plan.version),
         "seeds": (manifest.seeds, plan.seeds),
-        "policies": (sorted(manifest.policies), sorted(plan.policies)),
+        "policies": (sorted(manifest.policies), sorted({*plan.policies, *plan.digests})),
     }
     for key, (given, known) in facts.items():
         if given != known:

@@ -43,7 +43,8 @@ class Manifest(BaseModel):
         plan_hash: Hash of everything that decides the numbers; it also decides the sample.
         irsim, python, numpy, platform: Versions of the programs that ran it.
         engine: SHA-256 of the compiled engine.
-        policies: Name of each policy -> SHA-256 of its file, or of its text where it has no file.
+        policies: Name of each policy, also of others in the scenes -> SHA-256 of its file, or of its text where it has
+            no file.
         seeds: The seeds.
         episodes: Number of episodes.
         sample: The recorded episodes: of all episodes, ordered by the SHA-256 of ``PLAN_HASH:SCENARIO:POLICY:SEED``,
@@ -102,7 +103,7 @@ def manifest_of(plan: Plan, folder: Path, episodes: int, sample: list[SampledEpi
         numpy=np.__version__,
         platform=platform.platform(),
         engine=file_digest(Path(str(core.__file__))),
-        policies={name: plan.digests.get(name, digest(text)) for name, text in plan.policies.items()},
+        policies={name: digest(text) for name, text in plan.policies.items()} | plan.digests,
         seeds=plan.seeds,
         episodes=episodes,
         sample=sample,
