@@ -1,12 +1,14 @@
 """Keeps results of suites: ``python -m tests.benchmarks.reference.write NAME [FOLDER]`` for a name of ``TABLES``.
 
-It writes the episodes (``NAME.csv``) and the table with intervals (``skills/irsim-benchmark/results/NAME.md``), which
-also has the shares that were others before contacts between steps were counted and limits planned with (``before/``).
+It writes the episodes (``NAME.csv``) and the table with intervals (``skills/irsim-benchmark/results/NAME.md``). Those
+of suites v1 also have the shares that were others before contacts between steps were counted and limits planned with
+(``before/``).
 """
 
 from __future__ import annotations
 
 import csv
+import hashlib
 import io
 import sys
 import tempfile
@@ -24,7 +26,7 @@ from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.benchmark import EpisodeRow, SuiteResult
 from tests.benchmarks.reference.roles import HEAD, lines_by_role, page
 
-__all__ = ["FOLDER", "PAGES", "TABLES", "Table", "changes", "counted", "lines_of", "main"]
+__all__ = ["FOLDER", "PAGES", "TABLES", "Table", "changes", "counted", "kept", "lines_of", "main"]
 
 FOLDER = Path(__file__).parent
 PAGES = FOLDER.parents[2] / "skills" / "irsim-benchmark" / "results"
@@ -67,6 +69,19 @@ TABLES = {
         ("robots-5", "robots-10"),
     ),
     "mixed_v2": Table("mixed_v2", ("one-people", "half-orca"), again=("one-rl_rvo", "half-people"), by_role=True),
+    "random_polygons_v2": Table(
+        "random_polygons_v2",
+        ("robots-5", "step-10-0.2"),
+        ("orca", "rvo", "dash", "avocado", "footprint_orca"),
+        ("robots-5", "robots-10", "step-10-0.05", "step-10-0.2"),
+    ),
+    "circle_swap_v2": Table(
+        "circle_swap_v2", ("diff-8",), ("orca", "rvo", "sfm", "dash", "avocado", "footprint_orca"), ("diff-8", "omni-8")
+    ),
+    "social_v2": Table("social_v2", ("head-on",), again=("head-on", "doorway")),
+    "clutter_v2": Table("clutter_v2", ("posts-15",), again=("posts-15",)),
+    "maps_v2": Table("maps_v2", ("cave",), again=("cave", "maze")),
+    "crowdnav_circle_v2": Table("crowdnav_circle_v2", ("circle-invisible-5",), again=("circle-invisible-5",)),
 }
 _METRICS = ("time_to_goal", "velocity_avg", "path_length", "min_clearance")
 
@@ -90,13 +105,15 @@ def lines_of(episodes: Sequence[EpisodeRow], labels: dict[str, str]) -> list[str
 
 
 def changes(name: str, outcomes: Mapping[tuple[str, str], Counter[str]]) -> list[str]:
-    """The lines of a table with the shares that have changed, old and new side by side.
+    """The lines of a table with the shares that have changed, old and new side by side; none where no old ones are.
 
     Args:
         name: Name of the table.
         outcomes: (scenario, policy) → number of episodes by outcome, now.
     """
     kinds, rows, same = ("success", "collision", "timeout"), list[str](), dict[str, bool]()
+    if not (FOLDER / "before" / f"{name}.csv").exists():
+        return []
     with (FOLDER / "before" / f"{name}.csv").open(encoding="utf-8") as file:
         for row in csv.DictReader(file):
             scenario, policy = row["scenario"], row["policy"]
@@ -111,6 +128,13 @@ def changes(name: str, outcomes: Mapping[tuple[str, str], Counter[str]]) -> list
         f"/ collision / timeout in %, where they differ; all shares of {equal} are the same."
     )
     return ["## Before and now", "", about, "", "| scenario | policy | before | now |", "|---|---|---|---|", *rows]
+
+
+def kept(name: str) -> str:
+    """The line of a page that says where its episodes are."""
+    path = FOLDER / f"{name}.csv"
+    where = f"`{path.relative_to(FOLDER.parents[2]).as_posix()}` of the repository"
+    return f"\nAll episodes: {where}, SHA-256 `{hashlib.sha256(path.read_bytes()).hexdigest()}`."
 
 
 def _shares(counts: Sequence[int]) -> str:
@@ -136,10 +160,9 @@ def main(name: str, folder: str | None = None) -> None:
     (FOLDER / f"{name}.csv").write_text("\n".join(episodes) + "\n", encoding="utf-8")
     if TABLES[name].by_role:
         text = page(list(csv.DictReader(episodes)), TABLES[name].plan())
-        (PAGES / f"{name}.md").write_text(text, encoding="utf-8")
-        return
-    more = "\n".join(changes(name, counted(csv.DictReader(episodes))))
-    (PAGES / f"{name}.md").write_text(f"{markdown(result)}\n{more}\n", encoding="utf-8")
+    else:
+        text = "\n".join([markdown(result), *changes(name, counted(csv.DictReader(episodes))), kept(name), ""])
+    (PAGES / f"{name}.md").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
