@@ -14,7 +14,7 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 __all__ = ["COMPARED", "role_metrics", "shared_with"]
 
 COMPARED = "compared"
-"""Stands for the policy that is compared among those of a scenario's robots."""
+"""Stands for the policy that is compared among the policies of a scenario's robots."""
 
 
 def shared_with(policy: Policy, parts: Mapping[str, Policy | None]) -> Policy:
@@ -45,7 +45,7 @@ def role_metrics(
 
     Returns:
         By selection: ``robots`` (their number), ``success``, ``collision`` and ``timeout`` (shares of them), and means:
-        ``time_to_goal`` [s] and ``velocity_avg`` [m/s] of those that arrived (NaN without any), ``restricted_time``
+        ``time_to_goal`` [s] and ``velocity_avg`` [m/s] of robots that arrived (NaN without any), ``restricted_time``
         [s], which counts the horizon for the others, and ``collision_count``. Empty for other policies.
     """
     if policy is None or not policy.parts:

@@ -43,8 +43,8 @@ class Manifest(BaseModel):
         plan_hash: Hash of everything that decides the numbers; it also decides the sample.
         irsim, python, numpy, platform: Versions of the programs that ran it.
         engine: SHA-256 of the compiled engine.
-        policies: Name of each policy, also of others in the scenes -> SHA-256 of its file, or of its text where it has
-            no file.
+        policies: Name of each policy, also of the scenes' other ones -> SHA-256 of its file, or of its text where it
+            has no file.
         seeds: The seeds.
         episodes: Number of episodes.
         sample: The recorded episodes: of all episodes, ordered by the SHA-256 of ``PLAN_HASH:SCENARIO:POLICY:SEED``,

@@ -135,7 +135,7 @@ def _policies(suite: Suite, wanted: Sequence[str] | None) -> dict[str, str]:
 
 
 def _company(suite: Suite, made: Sequence[Expanded]) -> dict[str, str]:
-    """Name → policy as text of those that drive robots beside the compared ones; a text of its own is its name."""
+    """Name → policy as text of the ones that drive robots beside the compared policy; a text of its own is its name."""
     names = dict.fromkeys(name for one in made for name in one.policies.values() if name != COMPARED)
     known = {name: behavior_text(policy) for name, policy in suite.known_policies.items()}
     return {name: known.get(name, name) for name in names}

@@ -58,10 +58,12 @@ def compare_pedestrians(
         return
     for name, share in result.contacts.items():
         rows = [row for row in result.rows if row.recording == name]
-        console().print(f"{name}: {rows[0].likeness.cases} people, {share:.1%} of whom touch somebody", soft_wrap=True)
+        console().print(
+            f"{name}: {rows[0].likeness.cases} people, {share:.1%} of whom touch another person", soft_wrap=True
+        )
         console().print(_table(rows))
     console().print(
-        f"contacts: people who touch somebody (radius {radius:g} m). "
+        f"contacts: people who touch another person (radius {radius:g} m). "
         "speed, nearest: earth mover's distances from the recorded speeds and distances to the nearest other",
         soft_wrap=True,
     )

@@ -107,7 +107,7 @@ def zones_message(zones: Mapping[str, ZoneResult]) -> str | None:
     """Say which zones were entered or crossed, how often, by which object first, and which were not; None: no zones."""
     parts = [_zone_message(name, zone) for name, zone in zones.items() if zone.objects]
     empty = [quoted(name) for name, zone in zones.items() if not zone.objects]
-    parts += [f"nobody was in {listed(empty, _MAX_NAMED)}"] if empty else []
+    parts += [f"nothing was in {listed(empty, _MAX_NAMED)}"] if empty else []
     return listed(parts, _MAX_NAMED) if parts else None
 
 

@@ -60,7 +60,7 @@ class _Group:
 class PolicyDriver:
     """Part of the steps of a simulation: asks a policy, and keeps what it decided until the next decision.
 
-    It drives every robot that can move, or those of one part of a policy of several. Scenario draws, obstacles and
+    It drives every robot that can move, or the robots of one part of a mixed policy. Scenario draws, obstacles and
     noise do not depend on it.
 
     Args:

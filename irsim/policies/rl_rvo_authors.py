@@ -49,7 +49,7 @@ class RlRvoAuthorsPolicy(LayerPolicy):
     """RL-RVO (Han et al. 2022) with the weights of its authors, a file that you bring; `rl_rvo` is trained anew.
 
     The file is named by ``weights`` or by the environment variable ``RL_RVO_WEIGHTS``. It must be the published one,
-    so that a row of a table says whose weights it shows: ``irsim convert rl_rvo`` makes policies of others.
+    so that a row of a table says whose weights it shows: ``irsim convert rl_rvo`` makes policies of other weights.
 
     Args:
         weights: The file ``pre_train.pt`` of the authors; default: the value of ``RL_RVO_WEIGHTS``.
@@ -137,9 +137,9 @@ def _network(path: Path, margin: float) -> Network:
     Raises:
         PolicyError: The file is another one.
     """
-    found = digest(file_bytes(path, LIMITS.file_bytes, "the file of weights"))
-    if found != SHA256:
-        what = f"{clean(str(path))!r} is not the file of the authors: its SHA-256 is {found}, theirs {SHA256}"
+    given = digest(file_bytes(path, LIMITS.file_bytes, "the file of weights"))
+    if given != SHA256:
+        what = f"{clean(str(path))!r} is not the file of the authors: its SHA-256 is {given}, theirs {SHA256}"
         fix = f"{_RECIPE}; other weights: irsim convert rl_rvo FILE -o mine.npz, then name mine.npz as the policy"
         raise PolicyError("policy-file", what, fix)
     return converted("rl_rvo", path, {"margin": margin, "license": "MIT", "source": _PUBLISHED})

@@ -177,7 +177,7 @@ class EpisodeRow(Result):
     roles: dict[str, dict[str, float | None]] = Field(default_factory=dict)
     """Metrics of each role, where several policies share the robots (``{name: mixed, …}``): ``robots`` (their number),
     ``success``, ``collision`` and ``timeout`` (shares of them), ``time_to_goal`` [s] and ``velocity_avg`` [m/s] (means
-    of those that arrived), ``restricted_time`` [s] and ``collision_count`` (means); None where undefined."""
+    over robots that arrived), ``restricted_time`` [s] and ``collision_count`` (means); None where undefined."""
 
 
 class BenchmarkResult(Result):

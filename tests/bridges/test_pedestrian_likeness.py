@@ -141,7 +141,7 @@ def test_it_is_what_an_ordinary_scenario_with_replayed_people_does(behavior: dic
     walks = imitate(cases, behavior, cases.goal)
     ((_, others),) = cases.parts()
     for case in (0, 5, len(cases) - 1):
-        # a replayed person shows the velocity of the last leg at a recorded time, ours that of the next
+        # a replayed person shows the velocity of the last leg at a recorded time, ours of the next
         error = np.linalg.norm(walks[case] - ordinary(cases, case, others[case], behavior), axis=1).max()
         assert error < (1e-9 if behavior["name"] == "dash" else 0.1)
 

@@ -72,8 +72,8 @@ def test_people_walk_as_with_the_options_written_out(tmp_path: Path, name: str) 
 
 @pytest.mark.parametrize(("people", "fix"), [("etj", "people: eth"), ("[eth]", None), ("3", None)])
 def test_people_that_there_are_none_of(people: str, fix: str | None) -> None:
-    found = irsim.validate(text=SCENE.format(f"{{name: orca, people: {people}}}")).findings
-    first = next(item for item in found if item.severity == "error")
+    findings = irsim.validate(text=SCENE.format(f"{{name: orca, people: {people}}}")).findings
+    first = next(item for item in findings if item.severity == "error")
     assert first.path == "robot[0].behavior.people"
     assert "eth" in str(first.allowed) or fix is None
     assert first.fix == fix or fix is None

@@ -25,7 +25,7 @@ from tests.policies.networks.observed import observations
 
 @pytest.fixture
 def weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Small weights, which are taken for those of the authors."""
+    """Small weights, which are taken for the authors' own."""
     path = tmp_path / "pre_train.pt"
     path.write_bytes(as_files(rl_rvo_weights())[0])
     monkeypatch.setattr(rl_rvo_authors, "SHA256", digest(path.read_bytes()))

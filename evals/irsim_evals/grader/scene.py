@@ -39,7 +39,7 @@ class GradedScene:
         seed: Its seed.
         env: The environment at its start.
         bodies: Robots and obstacles in the order of the file; neither the map nor the walls round the world.
-        kept: What was computed once and is asked for again.
+        kept: Results that are asked for again.
     """
 
     seed: int

@@ -40,7 +40,7 @@ class Cases:
         seen: (W, 8, 2) x, y [m] of the person in the rows that are known.
         truth: (W, 12, 2) x, y in the rows that follow.
         goal: (W, 2) where its recording ends.
-        scenes: (13, P, 2) x, y of everybody from a last known row on, NaN while one is not there; one for each time.
+        scenes: (13, P, 2) x, y of all people from a last known row on, NaN while one is not there; one for each time.
         scene: (W,) index of the scene of a case.
         column: (W,) which of the people of the scene it is about.
     """
@@ -99,7 +99,7 @@ def read_cases(path: Path) -> Cases:
     """The people of a file of rows in metres, such as ETH's ``obsmat.txt``.
 
     Raises:
-        BridgeError: The file cannot be used, or nobody in it can be foretold.
+        BridgeError: The file cannot be used, or no person in it can be foretold.
     """
     recording = read_recording(path)
     if recording.format == "vsp":

@@ -45,7 +45,7 @@ class Compared:
     Attributes:
         rows: A row for each recording, behavior and goal.
         contacts: Recording -> share of its people who overlap another one in the recording itself.
-        radius: Radius of everybody [m].
+        radius: Radius of each person [m].
     """
 
     rows: list[Row]
@@ -67,7 +67,7 @@ def compare_pedestrians(
         files: Recordings in metres: ETH's ``obsmat.txt``, or lines ``frame id x y``.
         behaviors: Behaviors as text, such as ``orca`` or ``{name: orca, timeHorizon: 2}``.
         goals: Where people want to go.
-        radius: Radius of everybody [m].
+        radius: Radius of each person [m].
         progress: Called with the number of rows that are done, and of all.
 
     Raises:

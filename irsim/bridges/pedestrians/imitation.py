@@ -29,7 +29,7 @@ RADIUS = 0.2
 STEPS_OF_A_ROW = 4
 """Steps of the simulation between two rows."""
 _AHEAD = 60.0
-"""Time after which one who keeps its mean velocity would be at the extrapolated goal, so that nobody gets there [s]."""
+"""Time after which a person at its mean velocity would be at the extrapolated goal, so that it never gets there [s]."""
 _AWAY = 1000.0
 """Where those stand who are not there: farther away than any behavior looks [m]."""
 _APART = 100.0
@@ -53,7 +53,7 @@ def goals_of(cases: Cases, kind: GoalName) -> Floats:
 
 
 def imitate(cases: Cases, behavior: Mapping[str, Any], goals: Floats, *, radius: float = RADIUS) -> Floats:
-    """Places of people whom a behavior moves, each in a world of its own; nobody else there reacts.
+    """Places of people whom a behavior moves, each in a world of its own; no other person there reacts.
 
     A person starts with its last known velocity, and wants to walk as fast as it did on average while it was seen,
     whatever speed the options of the behavior name.
@@ -62,7 +62,7 @@ def imitate(cases: Cases, behavior: Mapping[str, Any], goals: Floats, *, radius:
         cases: The people and those around them.
         behavior: Name and options of the behavior.
         goals: (W, 2) where they want to go [m].
-        radius: Radius of everybody [m].
+        radius: Radius of each person [m].
 
     Returns:
         (W, 12, 2) x, y [m] in the rows that follow.

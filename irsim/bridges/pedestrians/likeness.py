@@ -40,7 +40,7 @@ def likeness(cases: Cases, places: Floats, radius: float) -> Likeness:
     Args:
         cases: The people.
         places: (W, 12, 2) their foretold places [m].
-        radius: Radius of everybody [m].
+        radius: Radius of each person [m].
     """
     ade, fde = displacement_errors(places, cases.truth)
     return Likeness(

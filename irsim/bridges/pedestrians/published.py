@@ -30,7 +30,7 @@ title: "One robot crosses recorded people of ETH, hotel and zara01"
 about: >-
   Windows of recordings of real people, named after the recording and the second in which they start. Each seed
   draws another start and goal of the robot in the recorded area, at least 60 % of its longer side apart. People
-  walk as they were recorded and do not see the robot: it has to give way to everybody, which real people would not
+  walk as they were recorded and do not see the robot: it has to give way to all people, which real people would not
   ask of it. The robot gathers at most 1 m/s and 4 rad/s in a second; arcs are exact within a step, and contacts
   count at every time. An episode ends with the first contact of the robot.
 sources:

@@ -2,7 +2,7 @@
 
 Each set was sought in one recording, of ETH BIWI (``eth``) or of UCY (``zara01``), such that people who know where they
 want to go are most like the recorded ones: in their places over 4.8 s, in their distances to the nearest other, and in
-the share of them that touch somebody. ``results/pedestrians.md`` of the skill irsim-benchmark is their card: how alike
+the share of them that touch others. ``results/pedestrians.md`` of the skill irsim-benchmark is their card: how alike
 people are in the recording that was fitted and in others. ``python -m tests.benchmarks.pedestrians.fit FOLDER`` finds
 the same numbers again.
 """

@@ -43,11 +43,11 @@ _AHEAD = 100.0
 
 @dataclass(frozen=True)
 class Flow:
-    """What a crowd does, as the mean of several corridors.
+    """A crowd's speed and order, as the mean of several corridors.
 
     Attributes:
         speed: Mean speed along the corridor, in the direction that each one wants [m/s].
-        overlapping: Share of people who overlap somebody at a time.
+        overlapping: Share of people who overlap others at a time.
         lanes: Order of lanes at the end, see :func:`lane_order`.
         mixed: The same with directions at random.
     """
@@ -110,7 +110,7 @@ def walk(behavior: Mapping[str, Any], density: float, *, both: bool = False, wor
 
 
 def lane_order(y: Floats, way: Floats) -> float:
-    """How much people walk in lanes: 1 if everybody in line with a person walks as the person does, or against it.
+    """How much people walk in lanes: 1 if all people in line with a person walk as the person does, or against it.
 
     It is the mean over people of the squared balance of directions among the others in their line: (same - opposite)² /
     (same + opposite)².
@@ -126,7 +126,7 @@ def lane_order(y: Floats, way: Floats) -> float:
 
 
 def parts() -> dict[str, str]:
-    """What this part puts into the page."""
+    """The text of this part of the page."""
     heads = ["density [1/m²]", "Weidmann [m/s]", *(f"`{name}`" for name in BEHAVIORS)]
     speed = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|", *map(speed_line, DENSITIES)]
     del heads[1]
@@ -135,7 +135,7 @@ def parts() -> dict[str, str]:
 
 
 def speed_line(density: float) -> str:
-    """Row of the table of speeds: of people in one direction, and how many of them overlap somebody."""
+    """Row of the table of speeds: of people in one direction, and how many of them overlap others."""
     flows = [walk(behavior, density) for behavior in BEHAVIORS.values()]
     cells = [f"{flow.speed:.2f} ({flow.overlapping:.0%})" for flow in flows]
     return f"| {density:g} | {weidmann(density):.2f} | {' | '.join(cells)} |"

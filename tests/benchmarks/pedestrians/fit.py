@@ -44,7 +44,7 @@ def distance(alike: Likeness, recorded: float) -> float:
 
     Args:
         alike: How alike they are.
-        recorded: Share of people who touch somebody in the recording.
+        recorded: Share of people who touch others in the recording.
     """
     return alike.ade + alike.nearest + abs(alike.contacts - recorded)
 
@@ -73,9 +73,9 @@ def fit(cases: Cases, behavior: str, trials: int = TRIALS, seed: int = 0) -> dic
         size = FIRST_STEP * (LAST_STEP / FIRST_STEP) ** (trial / trials)
         steps = dict(zip(best, rng.normal(0.0, size, len(best)).tolist(), strict=True))
         other = {key: _within(value * 2.0 ** steps[key], *BOUNDS[behavior][key]) for key, value in best.items()}
-        found = judge(some, behavior, other)[1]
-        if found < least:
-            best, least = other, found
+        distance = judge(some, behavior, other)[1]
+        if distance < least:
+            best, least = other, distance
     return best
 
 

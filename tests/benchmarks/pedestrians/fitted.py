@@ -23,11 +23,11 @@ NOT_SHIPPED = {
     },
     "orca": {"timeHorizon": 0.564, "safe_radius": 0.0753, "neighborDist": 8.77},
 }
-"""What the search found in hotel; it is worse than the defaults in the other recordings."""
+"""The options that the search found in hotel: they are worse than the defaults in the other recordings."""
 
 
 def parts(data: Path) -> dict[str, str]:
-    """What this part puts into the page."""
+    """The text of this part of the page."""
     recordings = {name.lower(): read_cases(data / file) for name, file in FILES.items()}
     return {
         f"fitted_{behavior}": f"**`{behavior}`**\n\n" + "\n".join(table(recordings, behavior)) for behavior in FITTED

@@ -38,7 +38,7 @@ def table(compared: Compared, name: str) -> list[str]:
 
 
 def parts(compared: Compared) -> dict[str, str]:
-    """What this part puts into the page."""
+    """The text of this part of the page."""
     ours = [_ours(compared, "constant velocity", ""), *(_ours(compared, name, GOALS[1]) for name in BEHAVIORS)]
     return {
         "radius": f"{compared.radius:g}",

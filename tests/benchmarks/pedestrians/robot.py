@@ -44,7 +44,7 @@ def measure(data: Path) -> tuple[Plan, BenchmarkResult]:
 
 
 def parts(plan: Plan, result: BenchmarkResult) -> dict[str, str]:
-    """What this part puts into the page."""
+    """The text of this part of the page."""
     lines = [
         "| recording | policy | n | success | collision | time-out | time [s] | nearest [m] | within 0.5 m |",
         "|---|---|---|---|---|---|---|---|---|",

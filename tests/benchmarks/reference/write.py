@@ -1,6 +1,6 @@
 """Keeps results of suites: ``python -m tests.benchmarks.reference.write NAME [FOLDER]`` for a name of ``TABLES``.
 
-It writes the episodes (``NAME.csv``) and the table with intervals (``skills/irsim-benchmark/results/NAME.md``). Those
+It writes the episodes (``NAME.csv``) and the table with intervals (``skills/irsim-benchmark/results/NAME.md``). Pages
 of suites v1 also have the shares that were others before contacts between steps were counted and limits planned with
 (``before/``).
 """
@@ -41,7 +41,7 @@ class Table:
         policies: The policies; None: the policies of the suite.
         quick: Names of the scenarios that the quick tests run again.
         again: Names of the scenarios that the slow tests run again; None: all.
-        by_role: Whether lines and page are those of ``roles.py``.
+        by_role: Whether ``roles.py`` writes lines and page.
     """
 
     suite: str
@@ -78,6 +78,8 @@ TABLES = {
     "circle_swap_v2": Table(
         "circle_swap_v2", ("diff-8",), ("orca", "rvo", "sfm", "dash", "avocado", "footprint_orca"), ("diff-8", "omni-8")
     ),
+    "social_v2": Table("social_v2", ("head-on",), again=("head-on", "doorway")),
+    "crowdnav_circle_v2": Table("crowdnav_circle_v2", ("circle-invisible-5",), again=("circle-invisible-5",)),
 }
 _METRICS = ("time_to_goal", "velocity_avg", "path_length", "min_clearance")
 

@@ -162,7 +162,7 @@ class Says(AnswerPredicate):
     at_least: Counted | None = None
     """How many of the points it makes; default: all."""
     files_there: bool = False
-    """Whether every YAML file that it names must be there, but for those that it only would or will write."""
+    """Whether every YAML file that it names must be there, except files that it only would or will write."""
     about: str = ""
     """Its meaning in words, for the evidence."""
     turn: Counted | None = None

@@ -168,7 +168,7 @@ class Bottleneck(OfBodies, ScenePredicate):
     width: Match = Match(ge=0)
     """Accepted widths of the narrowest place [m]; 0 where there is no way."""
     only: bool = False
-    """Whether there must be no way any more once this place is closed."""
+    """Whether closing this place must close every way."""
 
     def observe(self, material: Material, scene: GradedScene) -> Observation:
         """Measure the gaps."""
