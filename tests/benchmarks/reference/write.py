@@ -79,6 +79,7 @@ TABLES = {
         "circle_swap_v2", ("diff-8",), ("orca", "rvo", "sfm", "dash", "avocado", "footprint_orca"), ("diff-8", "omni-8")
     ),
     "social_v2": Table("social_v2", ("head-on",), again=("head-on", "doorway")),
+    "clutter_v2": Table("clutter_v2", ("posts-15",), again=("posts-15",)),
     "crowdnav_circle_v2": Table("crowdnav_circle_v2", ("circle-invisible-5",), again=("circle-invisible-5",)),
 }
 _METRICS = ("time_to_goal", "velocity_avg", "path_length", "min_clearance")
