@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+from contextlib import nullcontext
 from typing import Annotated, Any, Literal
 
 from mcp.types import CallToolResult, TextContent
@@ -87,7 +88,8 @@ def tool(services: Services) -> StrictTool:
                 **asked,
             )
         data = _first_rows(data, cursor, services.limits.text)
-        table = _table(data, data["view"])
+        with readable(job["id"]) if job is not None else nullcontext():
+            table = _table(data, data["view"])
         text = TextContent(type="text", text=_text(table, data))
         return CallToolResult(content=[text], structured_content=table.model_dump())
 
