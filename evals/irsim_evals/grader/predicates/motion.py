@@ -82,8 +82,7 @@ class Moves(OfBodies, EpisodePredicate):
     dy: Match | None = None
     """Accepted differences of y from begin to end [m]."""
     progress: Match | None = None
-    """Accepted shares of the straight way from its start to its last goal at which it ends: 0 is the start, 1 the
-    goal."""
+    """Accepted shares of the straight way from start to last goal at which it ends: 0 is the start, 1 the goal."""
     fastest: Match | None = None
     """Accepted values of the greatest speed along the heading [m/s]; of omnidirectional drives, in any direction."""
     slowest: Match | None = None
@@ -91,9 +90,8 @@ class Moves(OfBodies, EpisodePredicate):
     turn: Match | None = None
     """Accepted values of the greatest turn rate, to either side [rad/s]."""
     standstill: Match | None = None
-    """Accepted values of the longest time for which it stands still, at less than 2 cm/s, turning or not [s]. A body
-    that has arrived and has no further goal does not stand still from then on, nor does one that has not yet come into
-    the world."""
+    """Accepted values of the longest time for which it stands still, at less than 2 cm/s, turning or not [s]. The time
+    before it comes into the world does not count, nor does that after it has arrived and has no further goal."""
 
     def observe(self, material: Material, episode: GradedEpisode) -> Observation:
         """Measure the paths."""
@@ -209,10 +207,12 @@ def _state(episode: GradedEpisode, row: int, others: list[GradedBody], body: Gra
 
 @register("roams")
 class Roams(OfBodies, EpisodePredicate):
-    """In the second half of the episode each quadrant of the world holds a share of the positions."""
+    """In the second half of the episode, or since a time, each quadrant of the world has a share of their ways."""
 
     share: Quantity
-    """Least share of the positions in each quadrant."""
+    """Least share of the positions in each quadrant, of those in which a body moves."""
+    since: Quantity | None = None
+    """Begin of the part [s]; a negative time counts back from the end of the episode. Default: its middle."""
     endless: bool = True
     """None of them may come to rest for the last fifth of the episode."""
 
@@ -221,9 +221,10 @@ class Roams(OfBodies, EpisodePredicate):
         bodies = self.bodies(material, episode.scene)
         expected = f"each quadrant holds {self.share:.0%} of the positions of {self.of}"
         x0, y0, x1, y1 = episode.scene.bounds
-        half = len(episode.trace) // 2
-        points = episode.trace.pose[half:, [body.index for body in bodies], :2].reshape(-1, 2)
-        points = points[~np.isnan(points[:, 0])]
+        middle = episode.duration / 2 if self.since is None else episode.moment(self.since)
+        first = int(np.searchsorted(episode.trace.time, middle - 1e-9))
+        places = episode.trace.pose[first:, [body.index for body in bodies], :2]
+        points = places[np.abs(np.diff(places, axis=0, append=places[-1:])).max(axis=2) > 0]
         if not len(points):
             return Observation(False, expected, f"{bodies[0].name} has not come by then", bodies[0].entry)
         right, up = points[:, 0] > (x0 + x1) / 2, points[:, 1] > (y0 + y1) / 2
