@@ -12,6 +12,7 @@ from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite import SUITES
 from irsim.results.benchmark import SuiteResult
 from tests.benchmarks.central_planner import scene, share, succeeds
+from tests.benchmarks.reference.leaderboard import PAGE, leaderboard, standings
 from tests.benchmarks.reference.roles import page
 from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES, changes, counted, kept
 
@@ -52,6 +53,25 @@ def test_the_page_of_mixed_populations_is_that_of_its_episodes() -> None:
         with (FOLDER / f"{name}.csv").open(encoding="utf-8") as file:
             text = page(list(csv.DictReader(file)), TABLES[name].plan())
         assert (PAGES / f"{name}.md").read_text(encoding="utf-8") == text
+
+
+def test_the_leaderboard_is_that_of_the_kept_episodes() -> None:
+    assert PAGE.read_text(encoding="utf-8") == leaderboard()
+
+
+def test_a_policy_leads_for_sure_only_if_its_pairs_say_so() -> None:
+    def lines(policy: str, failures: int) -> list[dict[str, str]]:
+        outcomes = ["collision"] * failures + ["success"] * (40 - failures)
+        pairs = zip(range(40), outcomes, strict=True)
+        return [{"scenario": f"a{n % 4}", "seed": str(n), "policy": policy, "outcome": one} for n, one in pairs]
+
+    clear = standings([*lines("worse", 30), *lines("best", 0)])
+    assert [one.policy for one in clear] == ["best", "worse"]
+    assert clear[1].shares == (0.25, 0.75, 0.0)
+    assert clear[1].behind == -0.75
+    assert -0.9 < clear[1].behind_interval[0] < -0.75 < clear[1].behind_interval[1] < -0.5
+    close = standings([*lines("worse", 1), *lines("best", 0)])
+    assert close[1].behind_interval[0] < close[1].behind < 0.0 < close[1].behind_interval[1]
 
 
 @pytest.mark.parametrize("name", [name for name, table in TABLES.items() if not table.by_role])
