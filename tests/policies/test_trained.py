@@ -26,6 +26,7 @@ LEAST = {
     "corridor_social": 0.9,
     "multi_robot": 0.9,
     "multi_robot_freeze": 0.75,
+    "multi_robot_v2": 0.7,
     "sarl": 0.9,
     "rl_rvo": 0.7,
     "sarl_multi_robot": 0.75,
