@@ -187,7 +187,7 @@ def test_robots_and_what_can_be_pushed_are_moved_by_mujoco() -> None:
     with pytest.raises(BridgeError, match="no object 'rovr'") as caught:
         choose_agents(scene, ["rovr"])
     assert "rover" in str(caught.value)
-    with pytest.raises(BridgeError, match="cannot move block, whose drive is none"):
+    with pytest.raises(BridgeError, match="cannot move block, whose drive is 'none'"):
         choose_agents(scene, ["block"])
 
 

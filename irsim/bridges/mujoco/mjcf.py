@@ -64,7 +64,7 @@ def choose_agents(scene: SceneDescription, names: Iterable[str] | None) -> froze
             raise BridgeError("bridge-mismatch", f"agents: there is no object {name!r}", fix)
         agent = scene.agent(name)
         if not can_move(agent):
-            what = f"agents: MuJoCo cannot move {name}, whose drive is {agent.drive or 'none'}"
+            what = f"agents: MuJoCo cannot move {name}, whose drive is {(agent.drive or 'none')!r}"
             fix = f"name objects whose drive is one of {', '.join(DRIVES)}, or that can be pushed"
             raise BridgeError("bridge-mismatch", what, fix)
     return frozenset(names)

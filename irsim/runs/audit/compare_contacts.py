@@ -211,6 +211,6 @@ def compare_contacts(artifact: Artifact, encounters: Encounters, report: Report)
     if artifact.world.collision_mode == "contact":
         notes.append("bodies push each other: contacts within steps are not recomputed")
     if encounters.unresolved:
-        what = f"{encounters.unresolved} passages are too fast or too close to be decided; no ordinary run has any"
+        what = f"{encounters.unresolved} passages are too fast or too close to be decided"
         report.differ(_CODE, what, recomputed=encounters.unresolved)
     report.end("; ".join(notes))

@@ -21,9 +21,9 @@ Touch = Literal["no", "perhaps", "yes"]
 """Whether two bodies touch; ``perhaps``: within the tolerance."""
 _SMALLEST_SHARE = 2.0**-24
 """Length of the intervals of a step that are not divided further."""
-_MAX_LOOKS = 1000
+_MAX_LOOKS = 20_000
 """Number of poses within one step at which one pair is looked at."""
-_MAX_ALL_LOOKS = 500_000
+_MAX_ALL_LOOKS = 200_000
 """Number of such poses in a run, beyond which passages are not resolved."""
 _SAMPLES = 48
 """Number of poses after a first contact at which it is looked whether the two overlap."""

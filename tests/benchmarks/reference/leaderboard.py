@@ -39,7 +39,7 @@ class Standing(NamedTuple):
         policy: Its name.
         shares: Shares of its episodes by outcome, in the order success, collision, timeout.
         interval: 95 % interval of the share of successes.
-        behind: Its success less that of the first one; 0 for the first one.
+        behind: Its success minus the first one's; 0 for the first one.
         behind_interval: 95 % interval of that difference.
     """
 
@@ -72,7 +72,7 @@ def standings(episodes: Sequence[Mapping[str, str]]) -> list[Standing]:
     successes = estimates({policy: [*map(float, wins[policy])] for policy in order}, order, scenarios)
     differences = {p: [float(mine) - other for mine, other in zip(wins[p], best, strict=True)] for p in order}
     apart = estimates(differences, (), scenarios)
-    found = []
+    ranked = []
     for policy in order:
         shares = tuple(sum(made[policy] == kind for made in complete.values()) / count for kind in _KINDS)
         pairs = Counter(zip(wins[policy], best, strict=True))
@@ -82,8 +82,8 @@ def standings(episodes: Sequence[Mapping[str, str]]) -> list[Standing]:
         assert drawn.high is not None
         between = min(low, drawn.low), max(high, drawn.high)
         own = successes[policy].low or 0.0, successes[policy].high or 0.0
-        found.append(Standing(policy, shares, own, sum(differences[policy]) / count, between))
-    return found
+        ranked.append(Standing(policy, shares, own, sum(differences[policy]) / count, between))
+    return ranked
 
 
 def leaderboard() -> str:
@@ -98,9 +98,9 @@ def leaderboard() -> str:
         lines += ["| protocol | policy | success | collision | timeout | behind |", "|---|---|---|---|---|---|"]
         leads = []
         for protocol in dict.fromkeys(row["scenario"].rpartition("/")[2] for row in rows):
-            found = standings([row for row in rows if row["scenario"].endswith(f"/{protocol}")])
-            lines += [_row(protocol, one, one is found[0]) for one in found]
-            leads.append(_lead(protocol, found))
+            ranked = standings([row for row in rows if row["scenario"].endswith(f"/{protocol}")])
+            lines += [_row(protocol, one, one is ranked[0]) for one in ranked]
+            leads.append(_lead(protocol, ranked))
         lines += ["", " ".join(leads), ""]
     return "\n".join(lines)
 
@@ -111,10 +111,10 @@ def _row(protocol: str, one: Standing, is_first: bool) -> str:
     return f"| {protocol} | `{one.policy}` | {success} {_brackets(one.interval)} | {collision} | {timeout} | {behind} |"
 
 
-def _lead(protocol: str, found: Sequence[Standing]) -> str:
+def _lead(protocol: str, ranked: Sequence[Standing]) -> str:
     """Whether the first one leads for sure, and by how much."""
-    first, second = found[:2]
-    level = [one.policy for one in found[1:] if one.behind_interval[1] >= 0]
+    first, second = ranked[:2]
+    level = [one.policy for one in ranked[1:] if one.behind_interval[1] >= 0]
     if level:
         *most, last = [f"`{policy}`" for policy in level]
         names = f"{', '.join(most)} and {last}" if most else last
