@@ -48,7 +48,7 @@ _DIFFERENCES = (
 )  # fmt: skip
 INTERVALS = (
     "Intervals are 95 %: Wilson's for shares, Newcombe's for their differences, bootstrap for means. Rows over several "
-    "scenarios give each the same weight, and their intervals resample scenarios, too. Times count robots that arrived."
+    "scenarios count each episode once, and their intervals resample scenarios, too. Times count robots that arrived."
 )
 """Notes that a reader needs to judge the numbers."""
 POLICIES = "Policies by what they know besides their own state and goal"
