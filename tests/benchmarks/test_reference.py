@@ -51,7 +51,7 @@ def test_many_episodes_are_the_kept_ones(name: str, tmp_path: Path) -> None:
 def test_the_page_of_mixed_populations_is_that_of_its_episodes() -> None:
     for name in (name for name, table in TABLES.items() if table.by_role):
         with (FOLDER / f"{name}.csv").open(encoding="utf-8") as file:
-            text = page(list(csv.DictReader(file)), TABLES[name].plan())
+            text = page(list(csv.DictReader(file)), TABLES[name].plan()) + f"{kept(name)}\n"
         assert (PAGES / f"{name}.md").read_text(encoding="utf-8") == text
 
 

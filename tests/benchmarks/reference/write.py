@@ -158,7 +158,7 @@ def main(name: str, folder: str | None = None) -> None:
     episodes = [",".join(head), *TABLES[name].lines(result)]
     (FOLDER / f"{name}.csv").write_text("\n".join(episodes) + "\n", encoding="utf-8")
     if TABLES[name].by_role:
-        text = page(list(csv.DictReader(episodes)), TABLES[name].plan())
+        text = page(list(csv.DictReader(episodes)), TABLES[name].plan()) + f"{kept(name)}\n"
     else:
         text = "\n".join([markdown(result), *changes(name, counted(csv.DictReader(episodes))), kept(name), ""])
     (PAGES / f"{name}.md").write_text(text, encoding="utf-8")
