@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -168,10 +168,17 @@ def is_network(text: str) -> bool:
         InputError: The text is not a policy.
     """
     name, options = _parsed(text)
-    parts = options.get("policies") if name == MIXED else None
-    if isinstance(parts, Mapping):
-        return any(isinstance(one, (str, Mapping)) and is_network(behavior_text(one)) for one in parts.values())
+    if (parts := _part_texts(name, options)) is not None:
+        return any(map(is_network, parts))
     return name.endswith(SUFFIXES) or _is_trained(name) or name == RL_RVO_AUTHORS
+
+
+def _part_texts(name: str, options: Mapping[str, Any]) -> Iterator[str] | None:
+    """The policies of a mixed one as texts; None of another policy."""
+    parts = options.get("policies") if name == MIXED else None
+    if not isinstance(parts, Mapping):
+        return None
+    return (behavior_text(one) for one in parts.values() if isinstance(one, (str, Mapping)))
 
 
 def names_file(text: str) -> bool:
@@ -190,10 +197,8 @@ def has_inner_files(text: str) -> bool:
         InputError: The text is not a policy.
     """
     name, options = _parsed(text)
-    parts = options.get("policies") if name == MIXED else None
-    if isinstance(parts, Mapping):
-        texts = [behavior_text(one) for one in parts.values() if isinstance(one, (str, Mapping))]
-        return any(names_file(one) or has_inner_files(one) for one in texts)
+    if (parts := _part_texts(name, options)) is not None:
+        return any(names_file(one) or has_inner_files(one) for one in parts)
     return name == RL_RVO_AUTHORS and "weights" in options
 
 

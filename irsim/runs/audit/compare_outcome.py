@@ -47,13 +47,13 @@ def compare_arrivals(artifact: Artifact, report: Report) -> None:
                 step = int(steps[place])
                 _differ(report, body, step, f"'{body.name}' {what} in step {step}", float(distance[place]), threshold)
         begins = flags & ~np.concatenate([[False], flags[:-1]])
-        begun, told = set(steps[begins].tolist()), events.get(("arrival", body.name), set())
-        told = {step for step in told if artifact.first <= step <= artifact.last}
-        for step in sorted(begun ^ told):
-            has = "an arrival" if step in told else "no arrival"
+        recomputed, recorded = set(steps[begins].tolist()), events.get(("arrival", body.name), set())
+        recorded = {step for step in recorded if artifact.first <= step <= artifact.last}
+        for step in sorted(recomputed ^ recorded):
+            has = "an arrival" if step in recorded else "no arrival"
             what = f"the record has {has} of '{body.name}' in step {step}, unlike its flags"
-            report.differ("audit-arrival", what, object=body.name, step=step, recorded=step in told,
-                          recomputed=step in begun)  # fmt: skip
+            report.differ("audit-arrival", what, object=body.name, step=step, recorded=step in recorded,
+                          recomputed=step in recomputed)  # fmt: skip
         for step in sorted(events.get(("waypoint", body.name), set())):
             place = step - artifact.first
             if 0 < place < len(flags):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Mapping, Sequence
 
@@ -11,7 +9,7 @@ from irsim.benchmarks.plan import Plan
 from irsim.benchmarks.summary import estimates
 from irsim.results.benchmark import EpisodeRow, Estimate
 
-__all__ = ["HEAD", "lines_by_role", "page"]
+__all__ = ["HEAD", "page", "values_by_role"]
 
 _ROLES = ("probe", "crowd")
 _KEYS = ("success", "collision", "timeout", "time_to_goal")
@@ -51,20 +49,9 @@ _MEANS = (
 )
 
 
-def lines_by_role(episodes: Sequence[EpisodeRow], labels: Mapping[str, str]) -> list[str]:
-    """One line per episode with the metrics of both roles, numbers in full precision.
-
-    Args:
-        episodes: The episodes.
-        labels: Behavior as text → name of the policy.
-    """
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    for one in episodes:
-        values = [one.roles.get(role, {}).get(key) for role in _ROLES for key in _KEYS]
-        shown = ["" if value is None else repr(value) for value in values]
-        rows.writerow([one.scenario, labels[one.behavior], one.seed, one.outcome, one.steps, *shown])
-    return text.getvalue().splitlines()
+def values_by_role(episode: EpisodeRow) -> list[float | None]:
+    """The metrics of both roles, in the order of the head."""
+    return [episode.roles.get(role, {}).get(key) for role in _ROLES for key in _KEYS]
 
 
 class _Cells:

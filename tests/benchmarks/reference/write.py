@@ -13,7 +13,7 @@ import io
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +24,7 @@ from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.benchmark import EpisodeRow, SuiteResult
-from tests.benchmarks.reference.roles import HEAD, lines_by_role, page
+from tests.benchmarks.reference.roles import HEAD, page, values_by_role
 
 __all__ = ["FOLDER", "PAGES", "TABLES", "Table", "changes", "counted", "kept", "lines_of", "main"]
 
@@ -57,7 +57,7 @@ class Table:
     def lines(self, result: SuiteResult) -> list[str]:
         """One line per episode."""
         labels = {text: name for name, text in result.policies.items()}
-        return (lines_by_role if self.by_role else lines_of)(result.episodes, labels)
+        return lines_of(result.episodes, labels, values_by_role if self.by_role else _values)
 
 
 TABLES = {
@@ -85,22 +85,28 @@ TABLES = {
 _METRICS = ("time_to_goal", "velocity_avg", "path_length", "min_clearance")
 
 
-def lines_of(episodes: Sequence[EpisodeRow], labels: dict[str, str]) -> list[str]:
+def lines_of(
+    episodes: Sequence[EpisodeRow], labels: Mapping[str, str], values_of: Callable[[EpisodeRow], list[float | None]]
+) -> list[str]:
     """One line per episode, numbers in full precision.
 
     Args:
         episodes: The episodes.
         labels: Behavior as text → name of the policy.
+        values_of: The metrics of an episode.
     """
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     for episode in episodes:
-        values = [episode.metrics[key] for key in _METRICS]
-        shown = ["" if value is None else repr(value) for value in values]
+        shown = ["" if value is None else repr(value) for value in values_of(episode)]
         rows.writerow(
             [episode.scenario, labels[episode.behavior], episode.seed, episode.outcome, episode.steps, *shown]
         )
     return text.getvalue().splitlines()
+
+
+def _values(episode: EpisodeRow) -> list[float | None]:
+    return [episode.metrics[key] for key in _METRICS]
 
 
 def changes(name: str, outcomes: Mapping[tuple[str, str], Counter[str]]) -> list[str]:
