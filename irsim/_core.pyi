@@ -15,6 +15,9 @@ Flags = NDArray[np.uint8]
 Bools = NDArray[np.bool_]
 Real = TypeVar("Real", np.float32, np.float64)
 
+sources: str
+"""SHA-256 of all sources that this core was compiled from, in hexadecimal; line ends do not count."""
+
 class _Options:
     """Base of every options class: its constructor requires all fields as keywords; `fields` lists them in order."""
 

@@ -55,6 +55,7 @@ from irsim.scenario.perturbation import (
 )
 from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
 from irsim.scenario.yaml.document import Document, load_text
+from irsim.simulation.engine import engine
 
 __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "benchmark", "logged"]
 
@@ -225,6 +226,7 @@ def benchmark(
         notes=[],
         warnings=warnings,
         version=version(),
+        engine=engine(),
         reproduce=_command(names, wanted, chosen, texts, steps, strict, imports),
     )
 
@@ -235,7 +237,7 @@ def benchmark(
         copied["roles"] = {role: _without_nan(values) for role, values in result["roles"].items()}
         return EpisodeRow(scenario=name, behavior=behavior, seed=task.seed, metrics=metrics, **copied)
 
-    known = dict(Log.known(log, head)) if log is not None and resume else {}
+    head, known = Log.known(log, head) if log is not None and resume else (head, {})
     check_places(known, [(name, behavior, task.seed) for name, behavior, task in plan])
     with nullcontext() if log is None else Log(log, head, known) as book:
 

@@ -18,6 +18,7 @@ from irsim.benchmarks.summary import notes_of, perturbation_notes, protocols_of,
 from irsim.common.files import write_atomically
 from irsim.common.hashing import digest
 from irsim.common.records import ContentError, read_json
+from irsim.common.text import clean
 from irsim.episodes.opening import UNOPENED
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.runs.files import RunError, refusal, unreadable
@@ -52,22 +53,32 @@ class Log:
             raise refusal(file, error) from None
 
     @staticmethod
-    def known(file: str | Path, head: BenchmarkResult) -> dict[int, EpisodeRow]:
-        """The episodes of an earlier log of the same benchmark, by their places; none without a log.
+    def known(file: str | Path, head: BenchmarkResult) -> tuple[BenchmarkResult, dict[int, EpisodeRow]]:
+        """The result without episodes and the episodes of an earlier log of the same benchmark, by their places.
+
+        A log from before engines had an identity is gone on with, and the result then names none, either.
 
         Raises:
-            RunError: The log cannot be read, or belongs to another benchmark.
+            RunError: The log cannot be read, or belongs to another benchmark or another engine.
         """
         if not Path(file).exists():
-            return {}
+            return head, {}
         old, episodes = _read(file)
+        if not old.engine:
+            head = head.model_copy(update={"engine": ""})
+        elif old.engine != head.engine:
+            raise RunError(
+                "other-benchmark",
+                f"the episodes of {str(file)!r} are of engine {clean(old.engine, 20)}, and this is {head.engine}",
+                "start again in another folder: a source that decides numbers has changed, and results do not mix",
+            )
         if old != head:
             raise RunError(
                 "other-benchmark",
                 f"{str(file)!r} is the log of another benchmark or of another version",
                 "start again in another folder, or with the arguments and files of the first start",
             )
-        return episodes
+        return head, episodes
 
     def add(self, number: int, episode: EpisodeRow) -> None:
         """Write an episode; may be called from any thread.

@@ -13,6 +13,7 @@ import irsim._core as core
 from irsim.benchmarks.plan import Plan
 from irsim.common.hashing import digest, file_digest
 from irsim.common.installed import version
+from irsim.simulation.engine import engine
 
 __all__ = ["MANIFEST", "ROWS", "RUNS", "SAMPLED", "Manifest", "SampledEpisode", "manifest_of", "sampled_episodes"]
 
@@ -42,7 +43,8 @@ class Manifest(BaseModel):
         suite, suite_version, suite_hash: The suite.
         plan_hash: Hash of everything that decides the numbers; it also decides the sample.
         irsim, python, numpy, platform: Versions of the programs that ran it.
-        engine: SHA-256 of the compiled engine.
+        engine: Identity of the engine, see :func:`irsim.simulation.engine.engine`.
+        core: SHA-256 of its compiled part, which depends on system and compiler.
         policies: Name of each policy, also of the scenes' other ones -> SHA-256 of its file, or of its text where it
             has no file.
         seeds: The seeds.
@@ -64,6 +66,7 @@ class Manifest(BaseModel):
     numpy: Text
     platform: Text
     engine: Text
+    core: Text
     policies: dict[Text, Text]
     seeds: list[int]
     episodes: int
@@ -102,7 +105,8 @@ def manifest_of(plan: Plan, folder: Path, episodes: int, sample: list[SampledEpi
         python=platform.python_version(),
         numpy=np.__version__,
         platform=platform.platform(),
-        engine=file_digest(Path(str(core.__file__))),
+        engine=engine(),
+        core=file_digest(Path(str(core.__file__))),
         policies={name: digest(text) for name, text in plan.policies.items()} | plan.digests,
         seeds=plan.seeds,
         episodes=episodes,

@@ -229,6 +229,9 @@ class BenchmarkResult(Result):
     """Warnings about the scenarios."""
     version: str
     """Version of irsim."""
+    engine: str = ""
+    """Identity of the engine that ran all episodes, which changes with each source that decides a number; empty in
+    results from before engines had one."""
     reproduce: str
     """Command that reproduces this result."""
 

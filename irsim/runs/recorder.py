@@ -40,6 +40,7 @@ from irsim.runs.store import (
     runs_path,
     tidy,
 )
+from irsim.simulation.engine import engine
 from irsim.simulation.events import Event, read_events
 from irsim.simulation.trace import recorded_rows, sensors
 
@@ -389,6 +390,7 @@ def _text_of(simulation: Simulation) -> str:
 def _versions() -> dict[str, str]:
     return {
         "irsim": version(),
+        "engine": engine(),
         "python": platform.python_version(),
         "numpy": np.__version__,
         "platform": platform.platform(),

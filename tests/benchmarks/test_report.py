@@ -21,6 +21,7 @@ from irsim.cli.app import app
 from irsim.cli.benchmark import show_benchmark
 from irsim.cli.output import progress
 from irsim.results.benchmark import SuiteResult
+from irsim.simulation.engine import engine
 
 SUITE = """
 suite: small
@@ -246,4 +247,7 @@ def test_a_report_ends_with_the_line_that_cites_it(tmp_path: Path) -> None:
     assert isinstance(suite, SuiteResult)
     line = f"suite circle_swap_v1, version {suite.suite_version}, suite hash {suite.suite_hash}, run hash {suite.hash}"
     for told in (markdown(suite), page(suite)):
-        assert f"irsim {suite.version} (MIT), {line}, 2 seeds from " in told.replace("\\", "")
+        assert f"irsim {suite.version} (MIT), engine {engine()}, {line}, 2 seeds from " in told.replace("\\", "")
+        assert f"irsim {suite.version}, engine {engine()}" in told
+    older = suite.model_copy(update={"engine": ""})
+    assert "engine" not in markdown(older)  # of a result from before engines had an identity

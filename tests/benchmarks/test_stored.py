@@ -18,6 +18,7 @@ from irsim.benchmarks.plan import Plan, file_plan
 from irsim.benchmarks.stored import EPISODES, PLAN, RESULTS, default_folder, last_folder, resume_benchmark, run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.runs.files import RunError
+from irsim.simulation.engine import engine
 from tests.benchmarks.conftest import SUITE
 
 SCENE = "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.1}, distribution: {name: random}}\n"
@@ -64,6 +65,17 @@ def test_a_finished_run_is_not_run_again_but_may_be_read_again(suite: Path, tmp_
     counted: list[tuple[int, int]] = []
     again = run_plan(plan, tmp_path / "run", resume=True, progress=lambda *counts: counted.append(counts))
     assert (again, counted) == (first, [])
+
+
+def test_results_of_two_engines_do_not_mix(suite: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = suite_plan(str(suite), seeds=2)
+    for folder, known in (("other", "aaaaaaaaaaaa"), ("before-engines-had-an-identity", "")):
+        with monkeypatch.context() as patch:
+            patch.setattr("irsim.benchmarks.comparison.engine", lambda known=known: known)
+            run_plan(plan, tmp_path / folder)
+    with pytest.raises(RunError, match=f"are of engine aaaaaaaaaaaa, and this is {engine()}"):
+        resume_benchmark(tmp_path / "other", workers=1)
+    assert resume_benchmark(tmp_path / "before-engines-had-an-identity", workers=1).engine == ""
 
 
 def test_a_folder_holds_one_benchmark(suite: Path, tmp_path: Path) -> None:

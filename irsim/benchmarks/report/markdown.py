@@ -23,6 +23,7 @@ __all__ = [
     "differences_of",
     "facts_of",
     "markdown",
+    "program_of",
     "ranks_of",
     "roles_of",
     "title_of",
@@ -88,7 +89,7 @@ def markdown(result: BenchmarkResult, notes: Sequence[str] = ()) -> str:
         lines += [f"- {markdown_text(known)}:"] if known else []
         lines += [f"{'  ' * bool(known)}- {markdown_text(labels[text])}: {markdown_code(text)}" for text in texts]
     lines += ["", *(f"Note: {markdown_text(note)}  " for note in (*result.notes, *notes))]
-    lines += ["", INTERVALS, "", f"Reproduce: {markdown_code(result.reproduce)} with irsim {result.version}"]
+    lines += ["", INTERVALS, "", f"Reproduce: {markdown_code(result.reproduce)} with {program_of(result)}"]
     lines += ["", f"Cite this run: {markdown_text(citation_of(result))}"]
     return "\n".join(lines) + "\n"
 
@@ -115,7 +116,7 @@ def facts_of(result: BenchmarkResult) -> list[str]:
     lines = [f"{size}; {len(result.episodes):,} episodes."]
     if isinstance(result, SuiteResult):
         hashes = f"suite hash {result.suite_hash}, run hash {result.hash}"
-        lines.append(f"Suite version {result.suite_version}, {hashes}, irsim {result.version}.")
+        lines.append(f"Suite version {result.suite_version}, {hashes}, {program_of(result)}.")
     if result.assumptions:
         lines.append(f"Taken for granted: {'; '.join(result.assumptions)}.")
     if result.incidents:
@@ -123,9 +124,15 @@ def facts_of(result: BenchmarkResult) -> list[str]:
     return lines
 
 
+def program_of(result: BenchmarkResult) -> str:
+    """Version and engine of the program that ran the episodes."""
+    return f"irsim {result.version}" + (f", engine {result.engine}" if result.engine else "")
+
+
 def citation_of(result: BenchmarkResult) -> str:
-    """The words with which others cite a run: program, version, and hashes of what it depends on."""
+    """The words with which others cite a run: program, version, engine, and hashes of what it depends on."""
     parts = [f"irsim developers, irsim {result.version} (MIT)"]
+    parts += [f"engine {result.engine}"] if result.engine else []
     if isinstance(result, SuiteResult):
         parts += [f"suite {result.suite}, version {result.suite_version}", f"suite hash {result.suite_hash}"]
         parts.append(f"run hash {result.hash}")

@@ -21,6 +21,7 @@ from irsim.benchmarks.report.markdown import (
     columns_of,
     differences_of,
     facts_of,
+    program_of,
     ranks_of,
     roles_of,
     title_of,
@@ -77,7 +78,7 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
         *(f'<p class="note">{_shown(note)}</p>' for note in (*result.notes, *notes)),
         "<h2>Charts</h2>" if figures else "", f'<div class="charts">{"".join(figures)}</div>',
         f"<h2>Episodes that failed</h2><p>{len(worst)} of {failed:,} are shown.</p>" if worst else "", *worst,
-        "<h2>Run it again</h2>", f"<pre>{_shown(result.reproduce)}</pre><p>irsim {_shown(result.version)}</p>",
+        "<h2>Run it again</h2>", f"<pre>{_shown(result.reproduce)}</pre><p>{_shown(program_of(result))}</p>",
         f"<h2>Cite this run</h2><p>{_shown(citation_of(result))}</p>",
     ]  # fmt: skip
     return _SHELL.format(title=title, body="\n".join(filter(None, parts)))

@@ -1,5 +1,6 @@
 // The Python module irsim._core; irsim/_core.pyi declares its types.
 #include "bindings/helpers.hpp"
+#include "sources.hpp"
 
 NB_MODULE(_core, m) {
   irsim::nb::set_leak_warnings(false);  // at exit, options that Python modules hold outlive this module
@@ -18,4 +19,5 @@ NB_MODULE(_core, m) {
   irsim::bind_observing(m);
   irsim::bind_learners(m);
   irsim::bind_pictures(m);
+  m.attr("sources") = irsim::sources();
 }

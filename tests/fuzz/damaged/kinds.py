@@ -242,7 +242,8 @@ def _read_answer(file: Path, draw: random.Random) -> None:
 
 
 _MANIFEST = """{"format": 1, "suite": "x", "suite_version": 1, "suite_hash": "a", "plan_hash": "b", "irsim": "0.1.0",
- "python": "3.11", "numpy": "2.4", "platform": "any", "engine": "c", "policies": {"dash": "d"}, "seeds": [1],
+ "python": "3.11", "numpy": "2.4", "platform": "any", "engine": "c", "core": "d",
+ "policies": {"dash": "d"}, "seeds": [1],
  "episodes": 1, "sample": [{"scenario": "a", "policy": "dash", "seed": 1, "folder": "runs/00"}],
  "files": {"plan.json": "e", "results.json": "f", "runs/00/run.json": "a"}}"""
 _RUN_FILES = ("run.json", "resolved.json", "result.json", "scenario.yaml", "trace-0000.npz")
