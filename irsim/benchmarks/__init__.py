@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from irsim.common.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from irsim.benchmarks.comparison import DEFAULT_SEEDS, benchmark
+    from irsim.benchmarks.comparison import benchmark
     from irsim.benchmarks.log import logged
+    from irsim.benchmarks.preparation import DEFAULT_SEEDS
     from irsim.diagnostics.errors import BenchmarkError
     from irsim.scenario.behavior_override import AS_WRITTEN
 
@@ -19,7 +20,7 @@ __getattr__, __dir__ = lazy_names(
     {
         "AS_WRITTEN": "irsim.scenario.behavior_override",
         "BenchmarkError": "irsim.diagnostics.errors",
-        "DEFAULT_SEEDS": "irsim.benchmarks.comparison",
+        "DEFAULT_SEEDS": "irsim.benchmarks.preparation",
         "benchmark": "irsim.benchmarks.comparison",
         "logged": "irsim.benchmarks.log",
     },

@@ -6,61 +6,37 @@ computed episode by episode.
 
 from __future__ import annotations
 
-import itertools
 import math
-import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from irsim.benchmarks.assumptions import Limit, assumptions_of, limits_of, unequal_note
 from irsim.benchmarks.cluster import run_on_cluster
-from irsim.benchmarks.episode import Job, Task, check_policy, scenario_of
+from irsim.benchmarks.episode import Task
 from irsim.benchmarks.log import Log, check_places, logged, with_episodes
 from irsim.benchmarks.policies import (
-    chances_that_count,
-    digests_of,
-    job_keys,
     label_of,
-    listed_policies,
-    naming,
-    opened_policies,
 )
 from irsim.benchmarks.pool import MAX_GROUP, cores, run_tasks
-from irsim.benchmarks.roles import shared_with
-from irsim.benchmarks.seeds import seeds_from, seeds_text
+from irsim.benchmarks.preparation import DEFAULT_SEEDS, prepare
 from irsim.benchmarks.timing import time_behavior, timing_report
-from irsim.common.arguments import as_given, check_whole_number
-from irsim.common.installed import version
-from irsim.diagnostics.errors import InputError, OverLimitError
+from irsim.common.arguments import check_whole_number
 from irsim.episodes.episode import Progress
-from irsim.episodes.opening import findings_under_policy, unopened_findings
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import PolicySource
 from irsim.policies.policy import Policy
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
-from irsim.results.findings import Finding
 from irsim.results.run import EpisodeUntil
 from irsim.scenario.behavior_override import AS_WRITTEN
-from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.open import document_of, import_modules, read_scenario
+from irsim.scenario.limits import Limits
 from irsim.scenario.perturbation import (
     Perturbations,
-    perturbation_text,
-    perturbed,
-    perturbed_message,
-    read_perturbations,
 )
-from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
-from irsim.scenario.yaml.document import Document, load_text
-from irsim.simulation.engine import engine
+from irsim.scenario.yaml.document import Document
 
 __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "benchmark", "logged"]
 
-DEFAULT_SEEDS = 10
-"""Number of seeds if none are given."""
 _SEEDS_PER_TURN = {False: 5, True: MAX_GROUP}
 """Number of seeds that one policy runs before the next one, so that an interrupted benchmark can be compared, too: few,
 or where policies are networks as many as are run together."""
@@ -142,93 +118,17 @@ def benchmark(
         ExtraError: Ray is not installed; ClusterError: no cluster answers, or it has another irsim or lacks a module.
         WorkerError: Several processes have died in the same episode.
     """
-    names, given = _named_sources(files)
-    listed, where = listed_policies(policies, behaviors)
-    chosen, perturbations = seeds_from(seeds), read_perturbations(perturb)
-    texts = tuple(perturbation_text(item) for item in perturbations)
-    if steps is not None:
-        steps = check_whole_number("steps", steps)
     if workers is not None:
         workers = check_whole_number("workers", workers, 1)
-    limits = limits or DEFAULT_LIMITS
-    _check_size(names, listed, chosen, most_episodes)
-    import_modules(imports)
-    opened = opened_policies(listed, where, limits.root)
-    wanted = [label_of(policy) for policy in opened]
-    _check_names(names, wanted)
-    warnings: dict[str, list[Finding]] = {}
-    jobs: list[tuple[str, str, Job, Sequence[int]]] = []
-    periods, chances, changes = dict[str, float](), dict[str, list[str]](), dict[str, list[str]]()
-    unequal: dict[str, str] = {}
-    settled: dict[str, ResolvedScenario] = {}
-    for name, source in zip(names, given, strict=True):
-        document = _document(source, limits)
-        scenario, told = read_scenario(document, strict=strict, limits=document.limits)
-        warnings[name] = [Finding.of(item) for item in told]
-        if AS_WRITTEN not in wanted:
-            warnings[name] = findings_under_policy(warnings[name], scenario)
-        warnings[name] += unopened_findings(scenario, "a benchmark")
-        scenario = perturbed(scenario, perturbations, called=name if isinstance(source, Document) else None)
-        periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
-        if texts:
-            changes[name] = perturbed_message(scenario)
-        settled[name], limits_under = scenario, dict[str, dict[str, Limit]]()
-        for number, (compared, behavior) in enumerate(zip(opened, wanted, strict=True)):
-            policy = shared_with(compared, (parts or {}).get(name, {}))
-            if policy.stochastic and "policy" not in chances[name]:
-                chances[name].append("policy")
-            job = Job(
-                text=str(document.text),
-                path=document.path,
-                steps=steps,
-                strict=strict,
-                imports=tuple(imports),
-                limits=tuple(asdict(limits).items()),
-                until=until,
-                perturb=texts,
-                name=name,
-                maps=() if cluster is None else tuple(scenario.map_files.items()),
-                **job_keys(policy),
-            )
-            with naming(where, number):
-                check_policy(job)
-                driven = scenario_of(job)
-            chances[name] += [part for part in random_parts(driven) if part not in chances[name]]
-            limits_under[behavior] = limits_of(driven, own=isinstance(policy, BehaviorPolicy))
-            jobs.append((name, behavior, job, chosen))
-        chances[name] = chances_that_count(chances[name], opened, scenario)
-        if (note := unequal_note(limits_under)) is not None:
-            unequal[name] = note
-    plan = [
-        (name, behavior, Task(job, seed))
-        for name, behavior, job, every in jobs
-        for seed in (every if chances[name] else every[:1])
-    ]
-
+    head, opened, plan = prepare(
+        files, policies, seeds, behaviors=behaviors, perturb=perturb, steps=steps, strict=strict, imports=imports,
+        limits=limits, most_episodes=most_episodes, until=until, groups=groups, parts=parts,
+        send_maps=cluster is not None,
+    )  # fmt: skip
     turn = _SEEDS_PER_TURN[any(policy.batch_invariant for policy in opened)]
-    rank = {seed: position // turn for position, seed in enumerate(chosen)}
-    turns = sorted(range(len(plan)), key=lambda number: (names.index(plan[number][0]), rank[plan[number][2].seed]))
-    head = BenchmarkResult(
-        scenarios=names,
-        behaviors=wanted,
-        information={label_of(one): words for one in opened if (words := one.knowledge())},
-        digests=digests_of(opened),
-        seeds=chosen,
-        step_time=periods,
-        perturb=list(texts),
-        perturbed=changes,
-        unequal=unequal,
-        assumptions=assumptions_of(settled),
-        random=chances,
-        rows=[],
-        groups={name: list(members) for name, members in (groups or {}).items()},
-        episodes=[],
-        notes=[],
-        warnings=warnings,
-        version=version(),
-        engine=engine(),
-        reproduce=_command(names, wanted, chosen, texts, steps, strict, imports),
-    )
+    rank = {seed: position // turn for position, seed in enumerate(head.seeds)}
+    place = {name: position for position, name in enumerate(head.scenarios)}
+    turns = sorted(range(len(plan)), key=lambda number: (place[plan[number][0]], rank[plan[number][2].seed]))
 
     def row(number: int, result: Mapping[str, Any]) -> EpisodeRow:
         name, behavior, task = plan[number]
@@ -266,22 +166,6 @@ def _after(progress: Progress | None, done: int) -> Progress | None:
     return None if progress is None else lambda now, total: progress(done + now, done + total)
 
 
-def _sources(files: Any) -> list[str]:
-    """The scenarios, given as paths or texts, as strings."""
-    one = isinstance(files, (str, Path))
-    if not one and (isinstance(files, (Mapping, bytes, bytearray)) or not isinstance(files, Iterable)):
-        raise InputError(
-            f"files must be scenarios, got {as_given(files)}", "give a path, the text of a scenario, or a list of them"
-        )
-    listed = [files] if one else list(files)
-    for number, source in enumerate(listed):
-        if not isinstance(source, (str, Path)):
-            raise InputError(
-                f"files[{number}] must be a scenario, got {as_given(source)}", "give a path or the text of a scenario"
-            )
-    return [str(source) for source in listed]
-
-
 def _timing(
     opened: Sequence[Policy], plan: Sequence[tuple[str, str, Task]], results: Mapping[int, Mapping[str, Any]]
 ) -> dict[str, Any]:
@@ -298,75 +182,3 @@ def _timing(
             timed.add((scenario, behavior))
             times[behavior][str(number)] = time_behavior(task.job, task.seed)
     return timing_report(times, {name: labels.count(name) for name in times})
-
-
-def _named_sources(files: Any) -> tuple[list[str], list[str | Document]]:
-    """Names of the scenarios in the result, and the scenarios: paths, texts or documents."""
-    if not isinstance(files, Mapping):
-        given = _sources(files)
-        return _names(given), list(given)
-    documents = {name: source for name, source in files.items() if isinstance(source, Document)}
-    others = _sources([source for source in files.values() if not isinstance(source, Document)])
-    texts = iter(others)
-    return list(map(str, files)), [documents[name] if name in documents else next(texts) for name in files]
-
-
-def _names(given: list[str]) -> list[str]:
-    """Names of the scenarios in the result."""
-    texts = [source for source in given if "\n" in source]
-    if len(texts) < 2:
-        return ["(text)" if "\n" in source else source for source in given]
-    number = itertools.count(1)
-    return [f"(text {next(number)})" if "\n" in source else source for source in given]
-
-
-def _document(source: str | Document, limits: Limits) -> Document:
-    if isinstance(source, Document):
-        return source
-    if "\n" in source:
-        return load_text(source, limits=limits)
-    return document_of(source, None, limits)
-
-
-def _check_names(names: list[str], policies: list[str]) -> None:
-    for what, listed in (("scenario", names), ("policy", policies)):
-        twice = next((name for name in listed if listed.count(name) > 1), None)
-        if twice is not None:
-            raise InputError(f"the {what} {twice!r} is given twice", "give each once")
-
-
-def _check_size(names: list[str], policies: Sequence[Any], seeds: list[int], most: int | None) -> None:
-    for what, given in (("scenarios", names), ("policies", policies)):
-        if not given:
-            raise InputError(f"there must be at least one of the {what}, got none", f"give at least one of the {what}")
-    total = len(names) * len(policies) * len(seeds)
-    if most is not None and total > most:
-        product = f"{len(names)} scenarios x {len(policies)} policies x {len(seeds)} seeds = {total:,} episodes"
-        raise OverLimitError(f"{product}; at most {most:,} are run at once", f"ask for at most {most:,}")
-
-
-def _command(
-    names: list[str],
-    behaviors: list[str],
-    seeds: list[int],
-    perturb: Sequence[str],
-    steps: int | None,
-    strict: bool,
-    imports: Sequence[str],
-) -> str:
-    files = [
-        f"scenario{'' if name == '(text)' else name[6:-1]}.yaml" if name.startswith("(text") else name for name in names
-    ]
-    words: list[Any] = ["irsim", "benchmark", *files]
-    if behaviors != [AS_WRITTEN]:
-        words += ["--policies", ",".join(behaviors)]
-    words += ["--seeds", seeds_text(seeds)]
-    for text in perturb:
-        words += ["--perturb", text]
-    if steps is not None:
-        words += ["--steps", steps]
-    if strict:
-        words.append("--strict")
-    for name in imports:
-        words += ["--import", name]
-    return shlex.join(map(str, words))

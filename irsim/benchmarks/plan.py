@@ -8,8 +8,8 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, model_serializer
 
-from irsim.benchmarks.comparison import DEFAULT_SEEDS
 from irsim.benchmarks.policies import files_of, open_planned
+from irsim.benchmarks.preparation import DEFAULT_SEEDS
 from irsim.benchmarks.roles import COMPARED
 from irsim.benchmarks.seeds import seeds_from
 from irsim.benchmarks.suite import Protocol, Suite

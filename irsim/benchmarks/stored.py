@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -17,16 +17,17 @@ from pydantic import ValidationError
 from pydantic_core import PydanticSerializationError
 
 from irsim.benchmarks.comparison import benchmark
-from irsim.benchmarks.log import in_order
+from irsim.benchmarks.log import in_order, with_episodes
 from irsim.benchmarks.plan import Plan, map_hashes
+from irsim.benchmarks.preparation import prepare
 from irsim.benchmarks.timing import was_timed
 from irsim.common.files import TEMPORARY, code_of, write_atomically
 from irsim.common.installed import version
 from irsim.common.records import ContentError, read_json
 from irsim.episodes.episode import Progress
-from irsim.results.benchmark import BenchmarkResult, SuiteResult, SuiteScenarioFacts
+from irsim.results.benchmark import BenchmarkResult, EpisodeRow, SuiteResult, SuiteScenarioFacts
 from irsim.runs.clock import date_now
-from irsim.runs.files import RunError
+from irsim.runs.files import RunError, unreadable
 from irsim.scenario.limits import Limits
 
 __all__ = [
@@ -38,6 +39,7 @@ __all__ = [
     "last_folder",
     "measure_plan",
     "read_plan",
+    "result_of_episodes",
     "result_of_plan",
     "resume_benchmark",
     "run_plan",
@@ -139,20 +141,43 @@ def measure_plan(plan: Plan, **options: Any) -> BenchmarkResult:
     Raises:
         Others: as :func:`irsim.benchmark`.
     """
-    result = benchmark(
-        {scenario.name: scenario.document() for scenario in plan.scenarios},
-        plan.opened(),
-        plan.seeds,
-        perturb=plan.perturb,
-        steps=plan.steps,
-        strict=plan.strict,
-        imports=plan.imports,
-        until=plan.until,
-        groups=plan.groups,
-        parts=plan.parts(),
-        **options,
-    )
-    return result_of_plan(plan, result)
+    return result_of_plan(plan, benchmark(**_arguments(plan), **options))
+
+
+def result_of_episodes(plan: Plan, episodes: Iterable[EpisodeRow]) -> BenchmarkResult:
+    """The result of a plan whose episodes are known: nothing is run.
+
+    Args:
+        plan: The plan.
+        episodes: At least its episodes, in any order.
+
+    Raises:
+        RunError: An episode is missing.
+        Others: as :func:`irsim.benchmark`.
+    """
+    prepared = prepare(**_arguments(plan))
+    known = {(one.scenario, one.behavior, one.seed): one for one in episodes}
+    wanted = [(scenario, behavior, task.seed) for scenario, behavior, task in prepared.plan]
+    for scenario, behavior, seed in wanted:
+        if (scenario, behavior, seed) not in known:
+            raise unreadable(f"the episode of {scenario}, {behavior}, seed {seed} is missing")
+    return result_of_plan(plan, with_episodes(prepared.head, [known[key] for key in wanted]))
+
+
+def _arguments(plan: Plan) -> dict[str, Any]:
+    """The arguments of :func:`irsim.benchmark` that a plan has."""
+    return {
+        "files": {scenario.name: scenario.document() for scenario in plan.scenarios},
+        "policies": plan.opened(),
+        "seeds": plan.seeds,
+        "perturb": plan.perturb,
+        "steps": plan.steps,
+        "strict": plan.strict,
+        "imports": plan.imports,
+        "until": plan.until,
+        "groups": plan.groups,
+        "parts": plan.parts(),
+    }
 
 
 def resume_benchmark(

@@ -20,7 +20,6 @@ __all__ = [
     "is_summary",
     "notes_of",
     "paired_differences",
-    "proportion",
     "protocols_of",
     "rows_of",
     "summaries_of",
@@ -32,6 +31,8 @@ KEYS = tuple(metric.key for metric in (*METRICS, *EPISODE_METRICS))
 """Keys of the metrics of an episode."""
 _PROPORTIONS = frozenset(metric.key for metric in (*METRICS, *EPISODE_METRICS) if metric.unit == "0/1")
 """Keys of the metrics that are 0 or 1."""
+_OUTCOMES = ("success", "collision", "timeout")
+"""Outcomes of an episode, which are metrics, too."""
 _MAX_FAILURES = 10
 """Number of failures that a row lists, the most frequent ones."""
 _MIN_SCENARIOS = 10
@@ -40,18 +41,6 @@ _MAX_NAMED = 3
 """Number of scenarios that a note names."""
 _TABLE = ((True, True), (True, False), (False, True), (False, False))
 """Order of the counts that :func:`irsim.metrics.statistics.newcombe` takes."""
-
-
-def proportion(count: int, n: int, *, certain: bool = False) -> Proportion:
-    """A proportion with its interval.
-
-    Args:
-        count: Number of episodes with the property.
-        n: Number of all episodes.
-        certain: Nothing is random, so there is no interval.
-    """
-    low, high = (None, None) if certain else wilson(count, n)
-    return Proportion(count=count, n=n, rate=count / n, low=low, high=high)
 
 
 def estimates(
@@ -216,19 +205,12 @@ def _row(
     name: str, behavior: str, every: list[EpisodeRow], first: dict[Any, EpisodeRow], certain: bool
 ) -> BenchmarkRow:
     episodes = placed(every)
-    outcomes = [episode.outcome for episode in episodes]
+    outcomes: list[str] = [episode.outcome for episode in episodes]
     pairs = [(episode, first[_pair(episode)]) for episode in episodes if _pair(episode) in first]
     shown_as_shares = frozenset() if certain else _PROPORTIONS
     scenarios = [episode.scenario for episode in episodes] if is_summary(name) else None
     metrics = estimates(_columns(episodes), shown_as_shares, scenarios)
-    shares: dict[str, Any] = {
-        outcome: proportion(outcomes.count(outcome), len(outcomes), certain=certain)
-        for outcome in ("success", "collision", "timeout")
-    }
-    if scenarios is not None:
-        is_outcome = {outcome: [float(one == outcome) for one in outcomes] for outcome in shares}
-        for outcome, wide in estimates(is_outcome, is_outcome, scenarios).items():
-            shares[outcome] = shares[outcome].model_copy(update={"low": wide.low, "high": wide.high})
+    shares = {key: _proportion(metrics[key], outcomes.count(key), len(outcomes), certain) for key in _OUTCOMES}
     return BenchmarkRow(
         scenario=name,
         behavior=behavior,
@@ -239,14 +221,22 @@ def _row(
         roles={} if is_summary(name) else _roles(episodes, certain),
         failed={
             outcome: [episode.seed for episode in episodes if episode.outcome == outcome]
-            for outcome in ("collision", "timeout")
+            for outcome in _OUTCOMES[1:]
             if outcome in outcomes and not is_summary(name)
         },
         failures={} if is_summary(name) else _frequent_failures(episodes),
         incidents=incident_counts(every),
         incident_seeds={} if is_summary(name) else incident_seeds(every),
-        **shares,
+        success=shares["success"],
+        collision=shares["collision"],
+        timeout=shares["timeout"],
     )
+
+
+def _proportion(estimate: Estimate, count: int, n: int, certain: bool) -> Proportion:
+    """The share of an outcome, which is the mean of a metric; without an interval where nothing is random."""
+    low, high = (None, None) if certain else (estimate.low, estimate.high)
+    return Proportion(count=count, n=n, rate=count / n, low=low, high=high)
 
 
 def _columns(episodes: Sequence[EpisodeRow], keys: Sequence[str] = KEYS) -> dict[str, list[float | None]]:
@@ -277,16 +267,13 @@ def _zones(episodes: list[EpisodeRow]) -> dict[str, dict[str, Estimate]]:
     }
 
 
-_SHARES_OF_ROLES = frozenset({"success", "collision", "timeout"})
-
-
 def _roles(episodes: list[EpisodeRow], certain: bool) -> dict[str, dict[str, Estimate]]:
     """Estimates of the metrics of each role; shares of a single robot get the interval of a proportion."""
     result = {}
     for role, first in (episodes[0].roles if episodes else {}).items():
         alone = not certain and first["robots"] == 1
         columns = {key: [episode.roles.get(role, {}).get(key) for episode in episodes] for key in first}
-        result[role] = estimates(columns, _SHARES_OF_ROLES if alone else ())
+        result[role] = estimates(columns, _OUTCOMES if alone else ())
     return result
 
 
