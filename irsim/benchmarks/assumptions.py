@@ -9,8 +9,10 @@ from typing import Any, NamedTuple
 from irsim.common.text import clean, listed
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
-__all__ = ["Limit", "assumptions_of", "limits_of", "unequal_note"]
+__all__ = ["SWEPT", "Limit", "assumptions_of", "limits_of", "unequal_note"]
 
+SWEPT = "contacts within steps count, too"
+"""The words for contacts that count at every time."""
 _NAMED = 3
 """Number of scenarios that a sentence names."""
 
@@ -38,7 +40,7 @@ def _joined(facts: Iterable[tuple[str, str]]) -> str:
 
 def _contacts(scenario: ResolvedScenario) -> str:
     if scenario.world.contacts == "swept":
-        return "contacts within steps count, too"
+        return SWEPT
     return f"contacts count at the ends of steps of {scenario.world.step_time:g} s only"
 
 

@@ -14,6 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from irsim.benchmarks.labels import labels_of
+from irsim.benchmarks.report.rows import RANKS, rank_text, shown_ranks
 from irsim.benchmarks.summary import KEYS, is_summary
 from irsim.cli.benchmark_run import Wanted, run_benchmark
 from irsim.cli.findings import import_user_modules
@@ -246,10 +247,10 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
         if row.paired and row.scenario in summaries:
             where = f"{row.scenario}: " if len(summaries) > 1 else ""
             out.print(where + _difference_line(row, behaviors[row.behavior], behaviors[result.behaviors[0]]))
-    for name in summaries if len(behaviors) > 2 else ():
-        mine = sorted((one for one in result.ranks if one.scenario == name), key=lambda one: one.rank)
-        told = [f"{behaviors[one.behavior]} {one.rank:g} ({one.low} to {one.high})" for one in mine]
-        out.print(f"{name}: ranks by success, and the ranks that the intervals allow: {', '.join(told)}")
+    ranks = shown_ranks(result)
+    for name in [name for name in summaries if name in ranks]:
+        shown = [f"{behaviors[one.behavior]} {rank_text(one)}" for one in ranks[name]]
+        out.print(f"{name}: {RANKS[:1].lower()}{RANKS[1:]}: {', '.join(shown)}")
     suite = hasattr(result, "facts")
     failed = [row for row in result.rows if row.failed]
     for row in failed[: MAX_FAILED_LINES if suite else None]:

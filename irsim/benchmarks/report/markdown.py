@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from irsim.benchmarks.report.rows import policy_labels
-from irsim.benchmarks.summary import is_summary
+from irsim.benchmarks.assumptions import SWEPT
+from irsim.benchmarks.report.rows import RANKS, policy_labels, rank_text, shown_ranks
 from irsim.common.text import markdown_code, markdown_text, plural
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion, SuiteResult
 
 __all__ = [
     "INTERVALS",
     "POLICIES",
-    "RANKS",
     "ROLES",
     "Table",
     "about_of",
@@ -22,6 +21,7 @@ __all__ = [
     "columns_of",
     "differences_of",
     "facts_of",
+    "footnotes_of",
     "markdown",
     "program_of",
     "ranks_of",
@@ -51,13 +51,12 @@ INTERVALS = (
     "Intervals are 95 %: Wilson's for shares, Newcombe's for their differences, bootstrap for means. Rows over several "
     "scenarios count each episode once, and their intervals resample scenarios, too. Times count robots that arrived."
 )
-"""Notes that a reader needs to judge the numbers."""
+"""The intervals, and how many episodes count."""
+_CLEARANCE = "Contacts count within steps, but clearance is the smallest distance at the ends of steps."
 POLICIES = "Policies by what they know besides their own state and goal"
 """The heading of the policies."""
 ROLES = "By role: shares and means of the robots that one policy drives, each episode counted once"
 """The heading of the roles."""
-RANKS = "Ranks by success, and the ranks that the intervals of all pairs allow"
-"""The heading of the ranks."""
 Table = tuple[list[str], list[list[str]]]
 """Headings and rows of cells."""
 
@@ -89,7 +88,8 @@ def markdown(result: BenchmarkResult, notes: Sequence[str] = ()) -> str:
         lines += [f"- {markdown_text(known)}:"] if known else []
         lines += [f"{'  ' * bool(known)}- {markdown_text(labels[text])}: {markdown_code(text)}" for text in texts]
     lines += ["", *(f"Note: {markdown_text(note)}  " for note in (*result.notes, *notes))]
-    lines += ["", INTERVALS, "", f"Reproduce: {markdown_code(result.reproduce)} with {program_of(result)}"]
+    lines += ["", " ".join(footnotes_of(result))]
+    lines += ["", f"Reproduce: {markdown_code(result.reproduce)} with {program_of(result)}"]
     lines += ["", f"Cite this run: {markdown_text(citation_of(result))}"]
     return "\n".join(lines) + "\n"
 
@@ -224,17 +224,16 @@ def classes_of(result: BenchmarkResult) -> dict[str, list[str]]:
 
 def ranks_of(result: BenchmarkResult) -> Table | None:
     """The table of ranks over several scenarios, or else of each scenario; None with fewer than three policies."""
-    if len(result.behaviors) < 3:
-        return None
     labels = policy_labels(result)
-    wide = [one for one in result.ranks if is_summary(one.scenario)] or result.ranks
-    names = list(dict.fromkeys(one.scenario for one in wide))
-    rows = [
-        [one.scenario, labels[one.behavior], f"{one.rank:g} ({one.low} to {one.high})"]
-        for name in names
-        for one in sorted((one for one in wide if one.scenario == name), key=lambda one: one.rank)
-    ]
+    ranks = shown_ranks(result)
+    rows = [[name, labels[one.behavior], rank_text(one)] for name, of_row in ranks.items() for one in of_row]
     return (["scenario", "policy", "rank"], rows) if rows else None
+
+
+def footnotes_of(result: BenchmarkResult) -> list[str]:
+    """Sentences that a reader needs to judge the numbers."""
+    swept = any(SWEPT in text for text in result.assumptions)
+    return [INTERVALS, *([_CLEARANCE] if swept else [])]
 
 
 def cells_of(row: BenchmarkRow, columns: Sequence[tuple[str, str]] = _COLUMNS) -> list[str]:

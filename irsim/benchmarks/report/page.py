@@ -9,9 +9,7 @@ from html import escape
 
 from irsim.benchmarks.report.charts import charts
 from irsim.benchmarks.report.markdown import (
-    INTERVALS,
     POLICIES,
-    RANKS,
     ROLES,
     Table,
     about_of,
@@ -21,13 +19,14 @@ from irsim.benchmarks.report.markdown import (
     columns_of,
     differences_of,
     facts_of,
+    footnotes_of,
     program_of,
     ranks_of,
     roles_of,
     title_of,
     zones_of,
 )
-from irsim.benchmarks.report.rows import policy_labels
+from irsim.benchmarks.report.rows import RANKS, policy_labels
 from irsim.common.text import clean
 from irsim.results.benchmark import BenchmarkResult
 
@@ -62,7 +61,7 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
     parts = [
         f"<h1>{title}</h1>", *(f"<p>{_shown(line)}</p>" for line in facts_of(result)),
         *(f"<p>{_shown(line)}</p>" for line in about_of(result)),
-        _table(main), f'<p class="small">{_shown(INTERVALS)}</p>',
+        _table(main), f'<p class="small">{_shown(" ".join(footnotes_of(result)))}</p>',
         "<h2>Zones</h2><p>Means over the robots.</p>" + _table(zones) if zones else "",
         f"<h2>{_shown(ROLES)}</h2>" + _table(roles) if (roles := roles_of(result)) else "",
         f"<h2>Differences to {_shown(labels[result.behaviors[0]])} with the same seeds</h2>" + _table(differences)

@@ -7,10 +7,23 @@ from pathlib import Path
 from typing import Any
 
 from irsim.benchmarks.labels import labels_of
+from irsim.benchmarks.summary import is_summary
 from irsim.policies.catalog import SUFFIXES
-from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow, SuiteResult
+from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow, PolicyRank, SuiteResult
 
-__all__ = ["families", "policy_labels", "protocols", "series", "worst_episodes"]
+__all__ = [
+    "RANKS",
+    "families",
+    "policy_labels",
+    "protocols",
+    "rank_text",
+    "series",
+    "shown_ranks",
+    "worst_episodes",
+]
+
+RANKS = "Ranks by success, and the ranks that the intervals of all pairs allow"
+"""The heading of the ranks."""
 
 
 def policy_labels(result: BenchmarkResult) -> dict[str, str]:
@@ -55,6 +68,23 @@ def series(result: BenchmarkResult, names: list[str], behavior: str) -> list[Ben
     """The rows of a policy on some scenarios, in the order of the names."""
     of_scenario = {row.scenario: row for row in result.rows if row.behavior == behavior}
     return [of_scenario[name] for name in names if name in of_scenario]
+
+
+def shown_ranks(result: BenchmarkResult) -> dict[str, list[PolicyRank]]:
+    """Name of each row over several scenarios, or else of each row, → its ranks, the best policy first.
+
+    Empty with fewer than three policies, whose ranks their differences say.
+    """
+    wide = [one for one in result.ranks if is_summary(one.scenario)] or result.ranks
+    ranks: dict[str, list[PolicyRank]] = {}
+    for one in wide if len(result.behaviors) > 2 else ():
+        ranks.setdefault(one.scenario, []).append(one)
+    return {name: sorted(of_row, key=lambda one: one.rank) for name, of_row in ranks.items()}
+
+
+def rank_text(one: PolicyRank) -> str:
+    """A rank with the ranks that the intervals allow."""
+    return f"{one.rank:g} ({one.low} to {one.high})"
 
 
 MAX_WORST = 2
