@@ -47,6 +47,7 @@ from irsim.scenario.yaml.document import Document, load_path
 
 __all__ = [
     "SUITES",
+    "WRITTEN_SUITES",
     "Protocol",
     "Seeds",
     "Suite",
@@ -63,6 +64,10 @@ Combined = dict[str, Annotated[list[Any], Field(min_length=1)]]
 Listed = Annotated[list[Annotated[dict[str, Any], Field(min_length=1)]], Field(min_length=1)]
 MAX_SCENARIOS = 200
 """Largest number of scenarios that a suite expands to, without its protocols."""
+WRITTEN_SUITES = {
+    "pedestrians_v1": "irsim bridge pedestrians-suite --eth ETH/obsmat.txt --hotel HOTEL/obsmat.txt --zara01 zara01.txt"
+}
+"""Published suite that is made of files which irsim does not ship → the command that writes it, as ``NAME.yaml``."""
 
 
 class _Part(BaseModel):
@@ -274,6 +279,9 @@ def load_suite(word: str) -> tuple[Suite, Path]:
     """
     known = SUITES.names()
     path = SUITES.bundled(word) if word in known else Path(word)
+    if not path.is_file() and word in WRITTEN_SUITES:
+        what = f"the suite {word} is made of recordings that you have, and irsim does not ship them"
+        raise SuiteError(what, f"{WRITTEN_SUITES[word]} writes {word}.yaml; name that file", "unknown-suite")
     if not path.is_file():
         fix = suggestion(word, known, f"choose one of {', '.join(known)}, or give a file")
         raise SuiteError(f"there is no suite {clean(word)!r}", fix, "unknown-suite")
@@ -281,8 +289,8 @@ def load_suite(word: str) -> tuple[Suite, Path]:
 
 
 def is_suite(word: str) -> bool:
-    """Whether a word names a suite: a bundled one, perhaps misspelt, or a YAML file with the key ``suite``."""
-    return SUITES.is_named(word) or SUITES.is_file(word)
+    """Whether a word names a suite: a published one, perhaps misspelt, or a YAML file with the key ``suite``."""
+    return word in WRITTEN_SUITES or SUITES.is_named(word) or SUITES.is_file(word)
 
 
 def _text(item: Diagnostic, path: str, *, alone: bool) -> str:

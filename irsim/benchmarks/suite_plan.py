@@ -11,7 +11,7 @@ import yaml
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes, short_hash
 from irsim.benchmarks.policies import files_of
 from irsim.benchmarks.roles import COMPARED
-from irsim.benchmarks.suite import SUITES, Protocol, Suite, SuiteError, is_suite, load_suite
+from irsim.benchmarks.suite import SUITES, WRITTEN_SUITES, Protocol, Suite, SuiteError, is_suite, load_suite
 from irsim.benchmarks.suite_scenarios import Expanded, expand, step_time_of
 from irsim.diagnostics.diagnostic import nearest, suggestion
 from irsim.policies.registry import MIXED
@@ -226,7 +226,7 @@ def _split(name: str | Path) -> tuple[str, str] | None:
         return None
     for suite in (given, *given.parents):
         word = suite.as_posix()
-        if word in SUITES.names() or (suite.is_file() and is_suite(word)):
+        if word in (*SUITES.names(), *WRITTEN_SUITES) or (suite.is_file() and is_suite(word)):
             return word, given.relative_to(suite).as_posix()
     return None
 

@@ -89,6 +89,11 @@ def pedestrians_suite(
         return
     windows = ", ".join(f"{count} of {name} ({made.lengths[name]:g} s)" for name, count in made.windows.items())
     console().print(Text.assemble("wrote ", (made.file, "bold"), f": windows: {windows}"), soft_wrap=True)
+    if made.other:
+        what = (
+            f"{' and '.join(made.other)}: not the files of the published results (SHA-256), so its numbers are others"
+        )
+        console().print(Text.assemble(("note: ", "bold"), what), soft_wrap=True)
     console().print(Text.assemble("run it: ", (f"irsim benchmark {made.file}", "cyan")), soft_wrap=True)
 
 

@@ -7,7 +7,7 @@ import json
 import typer
 from rich.table import Table
 
-from irsim.benchmarks.suite import SUITES, load_suite
+from irsim.benchmarks.suite import SUITES, WRITTEN_SUITES, load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.options import Json
 from irsim.cli.output import console
@@ -39,4 +39,6 @@ def suites(json_output: Json = False) -> None:
         size = f"{len(plan.scenarios)} scenarios x {len(plan.policies)} policies x {len(plan.seeds)} seeds"
         table.add_row(name, f"{suite.title} ({size})")
     out.print(table)
+    for name, command in WRITTEN_SUITES.items():
+        out.print(f"{name} is made of recordings that you have: {command}", soft_wrap=True)
     out.print("irsim benchmark NAME runs one; irsim describe NAME explains it")

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel
 
-from irsim.benchmarks.suite import SUITES, Seeds, Suite, SuiteScenario, load_suite
+from irsim.benchmarks.suite import SUITES, WRITTEN_SUITES, Seeds, Suite, SuiteScenario, load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.lookup.answer import Answer, Key
 from irsim.policies.converters.convert import CONVERTERS
@@ -160,6 +160,7 @@ _PARTS: dict[str, type[BaseModel]] = {"": Suite, "scenarios": SuiteScenario, "se
 def suites_answer() -> Answer:
     """List the bundled suites, and describe the keys of a suite file."""
     listed = [Key(name=name, text=load_suite(name)[0].title) for name in SUITES.names()]
+    listed += [Key(name=name, text=f"of recordings that you have; {how}") for name, how in WRITTEN_SUITES.items()]
     return Answer(
         topic="suites",
         kind="index",
@@ -209,8 +210,23 @@ def _horizon(suite: Suite) -> str:
     return f"at most {suite.steps} steps" if suite.seconds is None else f"at most {suite.seconds:g} s"
 
 
+def _written_suite(name: str) -> Answer:
+    """The answer about a suite that a command writes."""
+    return Answer(
+        topic=name,
+        kind="suite",
+        title=f"suite {name}: made of recordings that you have",
+        text=f"irsim does not ship the recordings. `{WRITTEN_SUITES[name]}` writes the suite as {name}.yaml, and says "
+        f"whether the published results were made with the same files; `irsim benchmark {name}.yaml` runs it. The same "
+        f"files give the same suite. One scenario is named {name}.yaml/SCENARIO, for irsim run.",
+        see=["suites", "imports"],
+    )
+
+
 def suite_answer(name: str) -> Answer:
-    """Describe a bundled suite."""
+    """Describe a published suite."""
+    if name in WRITTEN_SUITES:
+        return _written_suite(name)
     suite, plan = load_suite(name)[0], suite_plan(name)
     full = f" ({suite.seeds.full} with --full)" if suite.seeds.full else ""
     return Answer(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from irsim.benchmarks.suite import SUITES
+from irsim.benchmarks.suite import SUITES, WRITTEN_SUITES
 from irsim.bundled import templates
 from irsim.common.event_kinds import EVENTS
 from irsim.common.json_output import schema_of_file
@@ -96,7 +96,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return code_answer(topic.strip())
     if name in templates.names():
         return template_answer(templates.load(name))
-    if topic.strip() in SUITES.names():
+    if topic.strip() in (*SUITES.names(), *WRITTEN_SUITES):
         return suite_answer(topic.strip())
     if words[:1] == ["suites"] and (found_key := suite_key_answer(words[1:])) is not None:
         return found_key

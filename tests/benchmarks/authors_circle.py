@@ -58,7 +58,6 @@ def outcomes(robots: int, seeds: Sequence[int], *, free: bool, margin: float) ->
         steps=300,
         perturb={"heading": round(math.pi, 4)},
         until="first_collision",
-        workers=1,
     ).rows
     return row.success.count, row.collision.count, row.timeout.count
 

@@ -19,6 +19,7 @@ from irsim.simulation.simulation import Simulation
 
 DURATION = 50.0
 """Time limit of an episode [s], as in the suite."""
+PROTOCOLS = ("freeze", "yield")
 LIMITS = {
     "diff": "vel_max: [1, 3], vel_min: [-1, -3], acce: [1, 4]",
     "omni": "vel_max: [1, 1], vel_min: [-1, -1], acce: [1, 1]",
@@ -93,7 +94,7 @@ robot:
 
 def cells() -> Iterator[Cell]:
     """All rows, in their order."""
-    for protocol in ("freeze", "yield"):
+    for protocol in PROTOCOLS:
         for integration in ("euler", "exact"):
             for robots in (5, 10, 15, 25):
                 yield Cell("robots", robots, protocol, integration=integration)
@@ -144,6 +145,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--episodes", type=int, default=200)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--groups", nargs="*", help="only the rows of these groups")
+    parser.add_argument("--robots", type=int, nargs="*", help="only the rows with these numbers of robots")
+    parser.add_argument("--protocols", nargs="*", choices=PROTOCOLS, help="only the rows of these protocols")
     parser.add_argument("--behavior", default=Cell.behavior, help="the behavior of the robots, as in a scenario")
     parser.add_argument("--unlimited", action="store_true", help="without acce")
     given = parser.parse_args(arguments)
@@ -151,7 +154,8 @@ def main(arguments: list[str] | None = None) -> int:
     print(f"| {' | '.join(head)} | time |\n|{'---|' * (len(head) + 1)}")
     seeds = list(range(given.first_seed, given.first_seed + given.episodes))
     for cell in cells():
-        if given.groups and cell.group not in given.groups:
+        chosen = ((cell.group, given.groups), (cell.robots, given.robots), (cell.protocol, given.protocols))
+        if any(wanted and value not in wanted for value, wanted in chosen):
             continue
         start = time.perf_counter()
         cell = replace(cell, behavior=given.behavior, limited=cell.limited and not given.unlimited)

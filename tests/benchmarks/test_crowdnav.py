@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import math
 from pathlib import Path
 
 import pytest
@@ -11,11 +13,13 @@ from irsim.benchmarks.suite import load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.env import Env
 from irsim.scenario.open import read_scenario
+from tests.benchmarks.crowdnav import same_scenes, with_rvo2
 from tests.benchmarks.crowdnav.write import FILE, rows
 
 LINES = FILE.read_text(encoding="utf-8").splitlines()[1:]
+EPISODES_OF_RVO2 = list(csv.DictReader((with_rvo2.FOLDER / "rvo2.csv").read_text(encoding="utf-8").splitlines()))
 SUITE = "crowdnav_circle_v1"
-ROOT = Path(__file__).resolve().parents[2]
+PAGE = Path(__file__).resolve().parents[2] / "skills" / "irsim-benchmark" / "results" / "crowdnav.md"
 
 
 def recorded(seeds: range) -> list[str]:
@@ -38,8 +42,7 @@ def test_the_record_has_every_outcome() -> None:
 
 
 def test_the_page_of_results_is_about_this_suite() -> None:
-    page = ROOT / "skills" / "irsim-benchmark" / "results" / "crowdnav.md"
-    text = page.read_text(encoding="utf-8")
+    text = PAGE.read_text(encoding="utf-8")
     plan = suite_plan(SUITE, full=True)
     assert f"hash {plan.hash} " in text
     assert [name.name for name in plan.scenarios if f"| {name.name} | " not in text] == []
@@ -81,3 +84,62 @@ def test_people_who_do_not_see_the_robot_walk_as_if_it_were_not_there() -> None:
 
     assert paths("circle-invisible-5", "dash") == paths("circle-invisible-5", "orca")
     assert paths("circle-visible-5", "dash") != paths("circle-visible-5", "orca")
+
+
+def test_the_page_has_what_the_program_with_rvo2_printed() -> None:
+    """The program itself runs in an environment of its own, with a library that irsim does not need."""
+    page = PAGE.read_text(encoding="utf-8")
+    within, ends = [[row[f"outcome_{key}"] for row in EPISODES_OF_RVO2] for key in with_rvo2.LIMITS]
+    times = [[float(row[f"time_{key}"]) for row in EPISODES_OF_RVO2] for key in with_rvo2.LIMITS]
+    rows = {
+        "rules of CrowdNav with RVO2, the 500 scenes of CrowdNav": (within, times[0]),
+        "the same, contacts looked for at the end of each step only, limit 25 s": (ends, times[1]),
+    }
+    for name, (outcomes, seconds) in rows.items():
+        success, collision, timeout, time = with_rvo2.summary(list(zip(outcomes, seconds, strict=True)))
+        assert f"| {name} | {success:.3f} | {collision:.3f} | {timeout:.3f} | {time:.2f} s |" in page
+    with (with_rvo2.FOLDER / "rvo2_scenarios.csv").open(encoding="utf-8") as file:
+        kept = [row for row in csv.DictReader(file) if row["contacts"] == "within"]
+    assert {row["scenario"] for row in kept} == {*with_rvo2.SCENARIOS}
+    for row in kept:
+        [line] = [line for line in page.splitlines() if line.startswith(f"| {row['scenario']} | ")]
+        shown = [float(word) for word in line.rstrip(" |").rsplit("|", 1)[1].split("/")]
+        exact = [float(row[key]) for key in ("success", "collision", "time")]
+        assert shown == [pytest.approx(value, abs=0.00501) for value in exact], row["scenario"]
+
+
+def test_irsim_has_the_outcomes_of_rvo2_in_the_scenes_of_crowdnav() -> None:
+    seeds = range(with_rvo2.FIRST_SEED, with_rvo2.FIRST_SEED + 20)
+    assert [one for one, _ in same_scenes.episodes(seeds)] == [same_scenes.kept()[seed][0] for seed in seeds]
+
+
+@pytest.mark.slow
+def test_irsim_has_the_outcome_of_rvo2_in_each_of_the_500_scenes(capsys: pytest.CaptureFixture[str]) -> None:
+    same_scenes.main()
+    row, compared = capsys.readouterr().out.splitlines()
+    assert f"| irsim, the 500 scenes of CrowdNav {row}" in PAGE.read_text(encoding="utf-8")
+    assert compared.startswith("same outcome as RVO2 in 500 of 500 episodes, same time in 216 of the 226")
+
+
+def test_a_person_keeps_its_velocity_within_a_step_and_takes_the_new_one_at_its_end() -> None:
+    robot = with_rvo2.Disc((0.0, 0.0), (4.0, 0.0))
+    person = with_rvo2.Disc((1.0, 0.7), (0.0, -4.0), velocity=(0.0, -1.0))
+    # Relative to the robot at 1 m/s the person goes from (1, 0.7) to (0.75, 0.45), straight towards it.
+    assert with_rvo2.between(robot, person, (1.0, 0.0)) == pytest.approx((0.75**2 + 0.45**2) ** 0.5)
+    # It passes the origin between the ends: from (0.1, -0.1) by (-0.25, 0.25).
+    near = with_rvo2.Disc((0.1, -0.1), (0.0, 0.0), velocity=(0.0, 1.0))
+    assert with_rvo2.between(robot, near, (1.0, 0.0)) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("shape", ["circle", "square"])
+def test_scenes_with_rvo2_keep_starts_and_goals_apart(shape: str) -> None:
+    for seed in range(1000, 1010):
+        discs = with_rvo2.scene(seed, 5, shape)
+        assert len(discs) == 6
+        for ends in ([one.place for one in discs], [one.goal for one in discs]):
+            gaps = [math.dist(ends[i], ends[j]) for i in range(6) for j in range(i)]
+            assert min(gaps) >= 0.8
+        if shape == "circle":
+            radii = [math.hypot(*one.place) for one in discs[1:]]
+            assert all(abs(radius - 4) <= 0.5 * 2**0.5 for radius in radii)
+            assert all(one.goal == (-one.place[0], -one.place[1]) for one in discs[1:])

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from string import Formatter
 
 import pytest
 
+from irsim.bridges.pedestrians.published import SHA256
 from tests.benchmarks.pedestrians import human, robot
-from tests.benchmarks.pedestrians.write import PAGE
+from tests.benchmarks.pedestrians.write import PAGE, TEXT
 
 
 @pytest.mark.foreign
@@ -26,3 +28,28 @@ def test_the_suite_is_written_again_and_its_first_episodes_are_those_on_record(f
     plan = robot.plan_of(foreign / "pedestrians")
     assert f"hash {plan.suite_hash}." in PAGE.read_text(encoding="utf-8")
     assert robot.episodes(plan) == robot.EPISODES.read_text(encoding="utf-8").splitlines()
+
+
+def test_the_page_has_the_words_of_its_template() -> None:
+    """Numbers take minutes, and come from files that not everybody has; everything else is checked here."""
+    shown, place = PAGE.read_text(encoding="utf-8"), 0
+    for words, *_ in Formatter().parse(TEXT.read_text(encoding="utf-8")):
+        place = shown.index(words, place) + len(words)
+    assert place == len(shown)
+
+
+def test_the_page_names_the_files_of_the_published_results() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    for name, file in human.FILES.items():
+        assert f"| {name} | `{file}` | {human.PUBLISHED[name]} | `{SHA256[name.lower()]}` |" in text
+
+
+@pytest.mark.foreign
+def test_the_table_of_files_is_made_again_and_notices_another_file(foreign: Path, tmp_path: Path) -> None:
+    data = foreign / "pedestrians"
+    assert human.files_table(data) in PAGE.read_text(encoding="utf-8")
+    for file in human.FILES.values():
+        (tmp_path / file).write_bytes((data / file).read_bytes())
+    (tmp_path / human.FILES["hotel"]).write_text("0 1 0 0\n")
+    assert ", not the published file |" in human.files_table(tmp_path).splitlines()[3]
+    assert human.files_table(tmp_path).count("not the published file") == 1

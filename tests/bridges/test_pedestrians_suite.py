@@ -10,10 +10,11 @@ import pytest
 from typer.testing import CliRunner
 
 from irsim.benchmarks.stored import measure_plan
-from irsim.benchmarks.suite import load_suite
-from irsim.benchmarks.suite_plan import suite_plan
+from irsim.benchmarks.suite import SuiteError, load_suite
+from irsim.benchmarks.suite_plan import suite_plan, suite_scene
 from irsim.bridges.base import BridgeError
 from irsim.bridges.pedestrians.published import write_pedestrians_suite
+from irsim.cli.app import app
 from irsim.cli.bridge import bridge_app
 from irsim.common.files import TargetError
 from irsim.diagnostics.errors import ArgumentError
@@ -82,7 +83,28 @@ def test_the_command() -> None:
     answer = json.loads(done.stdout)
     assert answer["file"] == "pedestrians_v1.yaml"
     assert set(answer["windows"]) == {"eth", "hotel", "zara01"}
+    assert answer["other"] == ["eth", "hotel", "zara01"]  # the recordings are made up
+    shown = CliRunner().invoke(bridge_app, ["pedestrians-suite", *given, "--force"])
+    assert "note: eth and hotel and zara01: not the files of the published results" in shown.stdout
     again = CliRunner().invoke(bridge_app, ["pedestrians-suite", *given])
     assert again.exit_code == 2
     with pytest.raises(TargetError):
         write_pedestrians_suite(files(), "pedestrians_v1.yaml")
+
+
+def test_its_name_alone_says_which_command_writes_it() -> None:
+    for load, word in ((load_suite, "pedestrians_v1"), (suite_scene, "pedestrians_v1/eth-0s")):
+        with pytest.raises(SuiteError, match="made of recordings that you have") as caught:
+            load(word)
+        assert caught.value.code == "unknown-suite"
+        assert "irsim bridge pedestrians-suite --eth ETH/obsmat.txt" in (caught.value.fix or "")
+    done = CliRunner().invoke(app, ["benchmark", "pedestrians_v1"])
+    assert done.exit_code == 2
+    described = CliRunner().invoke(app, ["describe", "pedestrians_v1"])
+    assert "irsim bridge pedestrians-suite --eth" in described.stdout
+    assert "pedestrians_v1 is made of recordings" in CliRunner().invoke(app, ["suites"]).stdout
+
+
+def test_a_file_of_that_name_is_a_suite() -> None:
+    made = write_pedestrians_suite(files(), "pedestrians_v1")
+    assert load_suite(made.file)[0].suite == "pedestrians_v1"

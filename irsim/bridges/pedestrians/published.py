@@ -12,13 +12,20 @@ from irsim.bridges.pedestrians.scenario import Layout, checked
 from irsim.bridges.pedestrians.suite import POLICIES, Episodes, windows_of
 from irsim.bridges.pedestrians.tracks import Window, frame_rate, make_tracks, read_recording
 from irsim.common.files import write_new
+from irsim.common.hashing import file_digest
 from irsim.diagnostics.errors import ArgumentError
 
-__all__ = ["RECORDINGS", "WrittenSuite", "write_pedestrians_suite"]
+__all__ = ["RECORDINGS", "SHA256", "WrittenSuite", "write_pedestrians_suite"]
 
 NAME = "pedestrians_v1"
 RECORDINGS = ("eth", "hotel", "zara01")
 """Recordings of the suite: ``seq_eth`` and ``seq_hotel`` of ETH BIWI, ``crowds_zara01`` of UCY."""
+SHA256 = {
+    "eth": "d452ae2185ecb1164c2fdf31e75f6236f4c2ffc02c751a6b2ae921740cbc60d1",
+    "hotel": "2b8577595204a6b780b80258fd50da35adb7293e3e06ad6f8e1b60965e7dde6e",
+    "zara01": "1147a1962a09abfb86f28c6cddcac862e095a0cf129b3016385b69eacdd09d85",
+}
+"""Recording -> SHA-256 of the file that the published results are of; other files give a suite of their own."""
 WINDOWS = 10
 """Largest number of windows of a recording."""
 _HEAD = f"""\
@@ -63,11 +70,13 @@ class WrittenSuite:
         file: The suite.
         windows: Recording -> number of its windows.
         lengths: Recording -> length of its windows [s].
+        other: Recordings whose file is not the one that the published results were made with.
     """
 
     file: str
     windows: dict[str, int]
     lengths: dict[str, float]
+    other: list[str]
 
 
 def write_pedestrians_suite(
@@ -100,4 +109,5 @@ def write_pedestrians_suite(
         text += "".join(f"{line}\n" for line in made.lines)
         windows[name], lengths[name] = len(made.starts), made.length
     write_new(Path(out), checked(text + _TAIL), overwrite=overwrite)
-    return WrittenSuite(str(out), windows, lengths)
+    other = [name for name in RECORDINGS if file_digest(Path(files[name])) != SHA256[name]]
+    return WrittenSuite(str(out), windows, lengths, other)

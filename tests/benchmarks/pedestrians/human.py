@@ -7,10 +7,29 @@ from pathlib import Path
 
 from irsim.bridges.pedestrians.comparison import Compared, compare_pedestrians
 from irsim.bridges.pedestrians.imitation import GOALS, GoalName
+from irsim.bridges.pedestrians.published import SHA256
+from irsim.common.hashing import file_digest
 
 FILES = {"ETH": "eth_obsmat.txt", "hotel": "hotel_obsmat.txt", "zara01": "trajectron_zara01.txt"}
 """Name on the page -> file."""
+PUBLISHED = {
+    "ETH": "github.com/crowdbotp/OpenTraj, commit 97ec1d5e, `datasets/ETH/seq_eth/obsmat.txt`",
+    "hotel": "the same, `datasets/ETH/seq_hotel/obsmat.txt`",
+    "zara01": "github.com/StanfordASL/Trajectron-plus-plus, commit 1031c7bd, "
+    "`experiments/pedestrians/raw/raw/all_data/crowds_zara01.txt`",
+}
+"""Name on the page -> where the file is."""
 BEHAVIORS = ("dash", "orca", "{name: orca, timeHorizon: 2}", "sfm")
+
+
+def files_table(data: Path) -> str:
+    """The files of a folder, and whether the published results were made with them."""
+    lines = ["| recording | file here | published in | SHA-256 |", "|---|---|---|---|"]
+    for name, file in FILES.items():
+        digest = file_digest(data / file)
+        note = "" if digest == SHA256[name.lower()] else ", not the published file"
+        lines.append(f"| {name} | `{file}` | {PUBLISHED[name]} | `{digest}`{note} |")
+    return "\n".join(lines)
 
 
 def compare(data: Path, names: Sequence[str] = tuple(FILES), behaviors: Sequence[str] = BEHAVIORS) -> Compared:

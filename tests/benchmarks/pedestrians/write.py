@@ -18,6 +18,7 @@ def page(data: Path) -> str:
     """The whole page."""
     text = TEXT.read_text(encoding="utf-8")
     parts = {
+        "files": human.files_table(data),
         **human.parts(human.compare(data)),
         **fitted.parts(data),
         **corridor.parts(),
@@ -28,6 +29,7 @@ def page(data: Path) -> str:
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
+    print(human.files_table(folder))
     PAGE.write_text(page(folder), encoding="utf-8")
     robot.EPISODES.write_text("\n".join(robot.episodes(robot.plan_of(folder))) + "\n", encoding="utf-8")
     print(f"wrote {PAGE}")

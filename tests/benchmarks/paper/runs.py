@@ -1,0 +1,103 @@
+"""The episodes of the tables: run again, or read from the files that are kept."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from irsim.benchmarks.plan import Plan
+from irsim.benchmarks.stored import measure_plan
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.results.benchmark import SuiteResult
+from tests.benchmarks.authors_circle import outcomes
+from tests.benchmarks.paper.tables import AUTHORS_SEEDS, POLICIES, Circle
+from tests.benchmarks.reference.write import FOLDER, TABLES
+
+__all__ = ["AUTHORS", "CIRCLE", "authors", "circle", "full", "keep", "keep_circle", "kept", "kept_circle", "table_2"]
+
+SUITE = "random_polygons_v1"
+TABLE_2 = FOLDER / "table_2.csv"
+AUTHORS, CIRCLE = (Path(__file__).with_name(name) for name in ("authors.csv", "circle.csv"))
+HEAD = "scenario,policy,seed,outcome,steps,time_to_goal,velocity_avg,path_length,min_clearance"
+Report = Callable[[str], None]
+Row = dict[str, str]
+
+
+def _rows(plan: Plan) -> list[Row]:
+    """The episodes of a plan as lines of a kept file."""
+    result = measure_plan(plan)
+    assert isinstance(result, SuiteResult)
+    return list(csv.DictReader([HEAD, *TABLES["table_2"].lines(result)]))
+
+
+def table_2(report: Report, seeds: int | None = None) -> list[Row]:
+    """The 7,000 episodes of the page, or the first seeds of each cell."""
+    rows = list[Row]()
+    for policy in POLICIES:
+        rows += _rows(suite_plan(SUITE, policies=[policy], seeds=seeds))
+        report(f"{policy}: {len(rows):,} episodes are done")
+    return rows
+
+
+def full(report: Report) -> list[Row]:
+    """The 1,000 episodes of each cell with 5 and 10 robots, and of ``footprint_orca`` with all others."""
+    rows = list[Row]()
+    for policy in POLICIES:
+        scenarios = None if policy == "footprint_orca" else ["robots-5", "robots-10"]
+        rows += _rows(suite_plan(SUITE, policies=[policy], full=True, scenarios=scenarios))
+        report(f"{policy}: {len(rows):,} episodes are done")
+    return rows
+
+
+def authors(seeds: int | None = None) -> list[Row]:
+    """The episodes of the authors' weights, which RL_RVO_WEIGHTS names."""
+    chosen = list(AUTHORS_SEEDS)[:seeds]
+    scenarios = ["robots-5", "robots-10"]
+    return _rows(
+        suite_plan(SUITE, policies=["rl_rvo_authors"], protocols=["freeze"], scenarios=scenarios, seeds=chosen)
+    )
+
+
+def circle(report: Report, seeds: int = 100) -> Iterator[Circle]:
+    """The authors' circle, under their weights."""
+    for robots in (6, 10, 14):
+        for margin in (0.1, 0.2):
+            for limited in (True, False):
+                counts = outcomes(robots, range(seeds), free=not limited, margin=margin)
+                yield Circle(robots, margin, limited, *counts)
+        report(f"the authors' circle with {robots} robots is done")
+
+
+def kept(path: Path) -> list[Row]:
+    """The rows of a kept file."""
+    with path.open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def keep(path: Path, rows: Sequence[Row]) -> None:
+    """Write a kept file."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        written = csv.DictWriter(file, HEAD.split(","), lineterminator="\n")
+        written.writeheader()
+        written.writerows(rows)
+
+
+def kept_circle() -> list[Circle]:
+    """The kept outcomes of the authors' circle."""
+    return [
+        Circle(
+            int(row["robots"]),
+            float(row["margin"]),
+            row["limited"] == "yes",
+            *(int(row[kind]) for kind in ("success", "collision", "timeout")),
+        )
+        for row in kept(CIRCLE)
+    ]
+
+
+def keep_circle(rows: Sequence[Circle]) -> None:
+    """Write the outcomes of the authors' circle."""
+    lines = [(*row[:2], "yes" if row.limited else "no", *row[3:]) for row in rows]
+    with CIRCLE.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([Circle._fields, *lines])
