@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import shutil
 from pathlib import Path
 
 from irsim.api.benchmark_report import record_episode
@@ -13,11 +14,22 @@ from irsim.benchmarks.plan import Plan
 from irsim.benchmarks.policies import label_of
 from irsim.benchmarks.roles import shared_with
 from irsim.benchmarks.stored import EPISODES, PLAN, RESULTS, read_plan
-from irsim.benchmarks.submission import MANIFEST, ROWS, RUNS, SampledEpisode, manifest_of, sampled_episodes
+from irsim.benchmarks.submission import (
+    MANIFEST,
+    POLICIES,
+    ROWS,
+    RUNS,
+    SampledEpisode,
+    manifest_of,
+    policy_file,
+    sample_seed,
+    sampled_episodes,
+)
 from irsim.benchmarks.summary import KEYS
 from irsim.common.files import code_of, write_atomically
 from irsim.common.text import cell
 from irsim.diagnostics.errors import InputError
+from irsim.policies.catalog import file_of
 from irsim.results.benchmark import CROWDED, BenchmarkResult
 from irsim.runs.files import RunError
 
@@ -47,8 +59,8 @@ def write_submission(result: BenchmarkResult, folder: Path) -> Path:
     done = [(one.scenario, names[one.behavior], one.seed) for one in result.episodes if one.outcome != CROWDED]
     try:
         write_atomically(folder / ROWS, table_of(result, names))
-        sample = _record(plan, folder, sampled_episodes(plan.hash, done))
-        files = [PLAN, EPISODES, RESULTS, ROWS]
+        sample = _record(plan, folder, sampled_episodes(sample_seed(plan), done))
+        files = [PLAN, EPISODES, RESULTS, ROWS, *_copy_policies(plan, folder)]
         for one in sample:
             files += [f"{one.folder}/{name}" for name in sorted(os.listdir(folder / one.folder))]
         manifest = manifest_of(plan, folder, len(result.episodes), sample, files)
@@ -57,6 +69,20 @@ def write_submission(result: BenchmarkResult, folder: Path) -> Path:
         code = code_of(error, "not-writable")
         raise RunError(code, f"{folder}: {error.strerror}", "make room, then give --resume") from None
     return folder / MANIFEST
+
+
+def _copy_policies(plan: Plan, folder: Path) -> list[str]:
+    """Copy the networks of the user, so that others can run them; those of irsim are wherever it is."""
+    copies = list[str]()
+    for name, text in plan.policies.items():
+        file = file_of(plan.sources.get(name, text))
+        if file is None or file.suffix != ".npz" or name not in plan.digests:
+            continue
+        copy = policy_file(plan.digests[name])
+        (folder / POLICIES).mkdir(exist_ok=True)
+        shutil.copyfile(file, folder / copy)
+        copies.append(copy)
+    return copies
 
 
 def _record(plan: Plan, folder: Path, chosen: list[tuple[str, str, int]]) -> list[SampledEpisode]:

@@ -35,7 +35,7 @@ from irsim.scenario.perturbation import (
 )
 from irsim.scenario.yaml.document import Document
 
-__all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "benchmark", "logged"]
+__all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "benchmark", "episode_row", "logged"]
 
 _SEEDS_PER_TURN = {False: 5, True: MAX_GROUP}
 """Number of seeds that one policy runs before the next one, so that an interrupted benchmark can be compared, too: few,
@@ -129,21 +129,13 @@ def benchmark(
     rank = {seed: position // turn for position, seed in enumerate(head.seeds)}
     place = {name: position for position, name in enumerate(head.scenarios)}
     turns = sorted(range(len(plan)), key=lambda number: (place[plan[number][0]], rank[plan[number][2].seed]))
-
-    def row(number: int, result: Mapping[str, Any]) -> EpisodeRow:
-        name, behavior, task = plan[number]
-        metrics = _without_nan(result["metrics"])
-        copied = {key: result[key] for key in _COPIED}
-        copied["roles"] = {role: _without_nan(values) for role, values in result["roles"].items()}
-        return EpisodeRow(scenario=name, behavior=behavior, seed=task.seed, metrics=metrics, **copied)
-
     head, known = Log.known(log, head) if log is not None and resume else (head, {})
     check_places(known, [(name, behavior, task.seed) for name, behavior, task in plan])
     with nullcontext() if log is None else Log(log, head, known) as book:
 
         def keep(number: int, result: Mapping[str, Any]) -> None:
             if book is not None:
-                book.add(turns[number], row(turns[number], result))
+                book.add(turns[number], episode_row(*plan[turns[number]], result))
 
         turns = [number for number in turns if number not in known]
         ordered, report = [plan[number][2] for number in turns], _after(progress, len(known))
@@ -153,8 +145,24 @@ def benchmark(
             results = run_on_cluster(ordered, address=cluster, workers=workers, progress=report, kept=keep)
     if timing is not None:
         timing.update(_timing(opened, plan, dict(zip(turns, results, strict=True))))
-    episodes = known | {number: row(number, result) for number, result in zip(turns, results, strict=True)}
+    episodes = known | {
+        number: episode_row(*plan[number], result) for number, result in zip(turns, results, strict=True)
+    }
     return with_episodes(head, [episodes[number] for number in range(len(plan))])
+
+
+def episode_row(scenario: str, behavior: str, task: Task, result: Mapping[str, Any]) -> EpisodeRow:
+    """The row of an episode.
+
+    Args:
+        scenario: Name of its scenario in the results.
+        behavior: Its policy as text.
+        task: Its task.
+        result: What :func:`irsim.benchmarks.pool.run_tasks` gives for the task.
+    """
+    metrics, copied = _without_nan(result["metrics"]), {key: result[key] for key in _COPIED}
+    copied["roles"] = {role: _without_nan(values) for role, values in result["roles"].items()}
+    return EpisodeRow(scenario=scenario, behavior=behavior, seed=task.seed, metrics=metrics, **copied)
 
 
 def _without_nan(values: Mapping[str, float]) -> dict[str, float | None]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import platform
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -10,15 +12,18 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 import irsim._core as core
-from irsim.benchmarks.plan import Plan
+from irsim.benchmarks.plan import Plan, short_hash
 from irsim.common.hashing import digest, file_digest
 from irsim.common.installed import version
 from irsim.simulation.engine import engine
 
-__all__ = ["MANIFEST", "ROWS", "RUNS", "SAMPLED", "Manifest", "SampledEpisode", "manifest_of", "sampled_episodes"]
+__all__ = [
+    *("MANIFEST", "POLICIES", "ROWS", "RUNS", "SAMPLED", "Manifest", "SampledEpisode", "manifest_of", "policy_file"),
+    *("sample_seed", "sampled_episodes"),
+]
 
-MANIFEST, ROWS, RUNS = "submission.json", "rows.csv", "runs"
-"""Names of the manifest, of the table of episodes, and of the folder of recorded episodes."""
+MANIFEST, ROWS, RUNS, POLICIES = "submission.json", "rows.csv", "runs", "policies"
+"""Names of the manifest, of the table of episodes, and of the folders of recorded episodes and of policies."""
 SAMPLED = 20
 """Number of episodes that are recorded; of a smaller benchmark all are."""
 Text = Annotated[str, Field(max_length=4096)]
@@ -41,7 +46,7 @@ class Manifest(BaseModel):
     Attributes:
         format: Version of this layout.
         suite, suite_version, suite_hash: The suite.
-        plan_hash: Hash of everything that decides the numbers; it also decides the sample.
+        plan_hash: Hash of everything that decides the numbers.
         irsim, python, numpy, platform: Versions of the programs that ran it.
         engine: Identity of the engine, see :func:`irsim.simulation.engine.engine`.
         core: SHA-256 of its compiled part, which depends on system and compiler.
@@ -49,8 +54,8 @@ class Manifest(BaseModel):
             has no file.
         seeds: The seeds.
         episodes: Number of episodes.
-        sample: The recorded episodes: of all episodes, ordered by the SHA-256 of ``PLAN_HASH:SCENARIO:POLICY:SEED``,
-            the first 20.
+        sample: The recorded episodes: of all episodes, ordered by the SHA-256 of ``SAMPLE:SCENARIO:POLICY:SEED``, the
+            first 20; for ``SAMPLE`` see :func:`sample_seed`.
         files: Path of each file -> its SHA-256.
     """
 
@@ -74,15 +79,31 @@ class Manifest(BaseModel):
     files: dict[Text, Text]
 
 
-def sampled_episodes(plan_hash: str, episodes: list[tuple[str, str, int]]) -> list[tuple[str, str, int]]:
-    """The episodes that a submission records, which its author cannot choose.
+def sample_seed(plan: Plan) -> str:
+    """What decides the sample: suite, scenarios, policies and seeds, in whatever order the plan has them."""
+    policies = [f"{text} {plan.digests.get(name, '')}" for name, text in plan.policies.items()]
+    parts = [sorted(scenario.name for scenario in plan.scenarios), sorted(policies), sorted(plan.seeds)]
+    return short_hash(json.dumps([plan.suite_hash, *parts]))
+
+
+def sampled_episodes(
+    seed: str, episodes: Iterable[tuple[str, str, int]], most: int | None = None
+) -> list[tuple[str, str, int]]:
+    """A sample of episodes, which follows from a text alone.
 
     Args:
-        plan_hash: Hash of the plan.
+        seed: The text: :func:`sample_seed` for what a submission records, the salt of a referee for what is run again.
         episodes: Scenario, name of the policy and seed of each episode.
+        most: Greatest number of episodes; default: the number that is recorded.
     """
-    order = sorted(episodes, key=lambda one: digest(f"{plan_hash}:{one[0]}:{one[1]}:{one[2]}"))
-    return order[:SAMPLED]
+    return sorted(episodes, key=lambda one: digest(f"{seed}:{one[0]}:{one[1]}:{one[2]}"))[
+        : SAMPLED if most is None else most
+    ]
+
+
+def policy_file(sha256: str) -> str:
+    """Path of the file of a policy in a submission."""
+    return f"{POLICIES}/{sha256[:16]}.npz"
 
 
 def manifest_of(plan: Plan, folder: Path, episodes: int, sample: list[SampledEpisode], files: list[str]) -> Manifest:

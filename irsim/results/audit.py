@@ -158,6 +158,8 @@ class LeaderboardRow(Result):
     """Share of episodes with a collision."""
     time_to_goal: float | None
     """Mean time of robots that arrived [s]."""
+    replayed: int = 0
+    """Number of episodes of this policy, in any scenario, that the audit has run again."""
 
 
 class SubmissionAudit(Result):
@@ -172,7 +174,17 @@ class SubmissionAudit(Result):
     episodes: int = 0
     """Number of rows."""
     sampled: int = 0
-    """Number of recorded episodes that were audited and compared with their rows."""
+    """Number of recorded episodes that were audited and compared with the suite and with their rows."""
+    engine: str = ""
+    """Identity of the engine that ran it, as it says."""
+    replayed: int = 0
+    """Number of episodes that were run again."""
+    salt: str = ""
+    """The text that has drawn them; the same text draws the same episodes. Empty if none were run again."""
+    not_replayed: list[str] = Field(default_factory=list)
+    """Drawn episodes that could not be run again, and why, in words."""
+    notes: list[str] = Field(default_factory=list)
+    """What was not compared otherwise, in words."""
     problems: list[Finding] = Field(default_factory=list)
     """Everything that is wrong, the first 50, each with the file that it is about."""
     problem_count: int = 0

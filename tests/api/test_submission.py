@@ -124,7 +124,7 @@ def test_a_record_that_was_changed_is_found(submission: Path) -> None:
 def test_a_record_of_another_seed_is_found(submission: Path) -> None:
     path = submission / "runs" / "00" / "run.json"
     change(path, lambda data: data.update(seed=7), sign=True)
-    assert problems(audit_submission(submission)) == {("submission-run", "runs/00")}
+    assert problems(audit_submission(submission)) == {("submission-origin", "runs/00")}
 
 
 def test_another_scenario_is_none_of_the_suite(submission: Path) -> None:

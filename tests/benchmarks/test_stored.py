@@ -71,7 +71,7 @@ def test_results_of_two_engines_do_not_mix(suite: Path, tmp_path: Path, monkeypa
     plan = suite_plan(str(suite), seeds=2)
     for folder, known in (("other", "aaaaaaaaaaaa"), ("before-engines-had-an-identity", "")):
         with monkeypatch.context() as patch:
-            patch.setattr("irsim.benchmarks.comparison.engine", lambda known=known: known)
+            patch.setattr("irsim.benchmarks.preparation.engine", lambda known=known: known)
             run_plan(plan, tmp_path / folder)
     with pytest.raises(RunError, match=f"are of engine aaaaaaaaaaaa, and this is {engine()}"):
         resume_benchmark(tmp_path / "other", workers=1)

@@ -41,9 +41,17 @@ AUDITS: dict[str, Code] = {
         "file of a submission differs",
         "A file is missing, is not listed in the manifest, is a link, or has another SHA-256 than the manifest says.",
     ),
+    "submission-suite": Code(
+        "submission is not of the suite",
+        "The suite, a scenario, a policy or another part of the plan is not the one that irsim has under that name.",
+    ),
+    "submission-engine": Code(
+        "engines contradict each other", "The result was made by another version or engine than the manifest says."
+    ),
     "submission-rows": Code(
         "episodes do not fit the suite",
-        "Each scenario, policy and seed must have exactly one row, and the suite must have these scenarios.",
+        "Each scenario, policy and seed must have exactly one row of a possible episode, seeds are without room only "
+        "where the scene has none, and what the result says of the suite must follow from it.",
     ),
     "submission-table": Code(
         "table does not follow from the rows",
@@ -51,8 +59,17 @@ AUDITS: dict[str, Code] = {
     ),
     "submission-run": Code(
         "recorded episode contradicts its row",
-        "The sample is not the one that the hash of the plan decides, or the audit of a recorded episode differs from "
-        "its row or from its own files.",
+        "The sample is not the one that suite, policies and seeds decide, or the audit of a recorded episode differs "
+        "from its row or from its own files.",
+    ),
+    "submission-origin": Code(
+        "record is of another episode",
+        "A recorded episode does not begin as the scenario, the seed and the policy of its row do: the scene is drawn "
+        "again, and poses, goals, shapes, limits and options are compared.",
+    ),
+    "submission-replay": Code(
+        "episode run again differs",
+        "An episode of the submission, run again by the auditor, has another row or another trace, or cannot be run.",
     ),
     "record-incomplete": Code(
         "record lacks what an audit needs",
