@@ -14,7 +14,7 @@ from pathlib import Path
 
 from irsim.benchmarks.incidents import incident_messages
 from irsim.benchmarks.pairs import pairs_of, ranks_of
-from irsim.benchmarks.summary import notes_of, perturbation_notes, protocols_of, rows_of, summaries_of
+from irsim.benchmarks.summary import grouped_notes, notes_of, perturbation_notes, protocols_of, rows_of, summaries_of
 from irsim.common.files import write_atomically
 from irsim.common.hashing import digest
 from irsim.common.records import ContentError, read_json
@@ -184,11 +184,11 @@ def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> Benc
     protocols = protocols_of(head.scenarios)
     summaries = summaries_of(episodes, head.scenarios, head.behaviors, protocols, head.groups)
     notes = perturbation_notes(head.perturbed) + notes_of(episodes, head.random, head.seeds)
-    notes += [f"{name}: {note}" for name, note in head.unequal.items()]
+    notes += grouped_notes(head.unequal)
     unopened = {
         name: finding.message for name in head.warnings for finding in head.warnings[name] if finding.code == UNOPENED
     }
-    notes += [f"{name}: {message}" for name, message in unopened.items()]
+    notes += grouped_notes(unopened)
     rows = rows_of(summaries, head.behaviors, head.random)
     pairs = pairs_of(summaries, head.behaviors, head.random)
     changes = {

@@ -17,6 +17,7 @@ from irsim.results.benchmark import BenchmarkRow, EpisodeRow, Estimate, Proporti
 __all__ = [
     "ALL",
     "KEYS",
+    "grouped_notes",
     "is_summary",
     "notes_of",
     "paired_differences",
@@ -61,8 +62,9 @@ def estimates(
         others = [name for name in known if name not in shares]
         drawn = dict(zip(others, bootstraps([known[name] for name in others]), strict=True))
     else:
-        table = [[math.nan if value is None else value for value in values] for values in columns.values()]
-        drawn = dict(zip(columns, nested_bootstraps(table, _numbers(scenarios)), strict=True))
+        others = [name for name, values in known.items() if values]
+        table = [[math.nan if value is None else value for value in columns[name]] for name in others]
+        drawn = dict(zip(others, nested_bootstraps(table, _numbers(scenarios)), strict=True)) if others else {}
     result = {}
     for name, values in known.items():
         n, mean, std = spread(values)
@@ -163,15 +165,25 @@ def rows_of(
 
 
 def perturbation_notes(changes: Mapping[str, Sequence[str]]) -> list[str]:
-    """Notes about what each seed changes in each scenario; one note if it is the same in all.
+    """Notes about what each seed changes in each scenario.
 
     Args:
         changes: The changes by each seed in each scenario, in words.
     """
     notes = {name: f"perturbed, drawn uniformly for each seed: {'; '.join(parts)}" for name, parts in changes.items()}
-    if len(set(notes.values())) == 1:
-        return list(notes.values())[:1]
-    return [f"{name}: {note}" for name, note in notes.items()]
+    return list(notes.values())[:1] if len(set(notes.values())) == 1 else grouped_notes(notes)
+
+
+def grouped_notes(notes: Mapping[str, str]) -> list[str]:
+    """Notes on scenarios, each once, after the scenarios that it is about.
+
+    Args:
+        notes: Scenario → note.
+    """
+    scenarios: dict[str, list[str]] = {}
+    for name, note in notes.items():
+        scenarios.setdefault(note, []).append(name)
+    return [f"{listed(names, _MAX_NAMED)}: {note}" for note, names in scenarios.items()]
 
 
 def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]], seeds: Sequence[int]) -> list[str]:

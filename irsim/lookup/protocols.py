@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -9,6 +10,7 @@ from irsim.benchmarks.assumptions import assumptions_of
 from irsim.benchmarks.report.markdown import INTERVALS
 from irsim.benchmarks.suite import SUITES, Suite, load_suite
 from irsim.benchmarks.suite_plan import suite_plan
+from irsim.common.data_files import skills_directory
 from irsim.common.text import listed, plural
 from irsim.lookup.answer import plain_table
 from irsim.policies.catalog import open_policy
@@ -62,7 +64,17 @@ def _parts(name: str) -> Iterator[str]:
     if suite.sources:
         yield "## Sources\n\n" + "\n".join(f"- {source}" for source in suite.sources)
     one = f"irsim run {name}/{plan.scenarios[0].name} --seed {plan.seeds[0]}"
-    yield f"## Run it\n\n`irsim benchmark {name}`; one episode: `{one}`."
+    own = f"The policies of the suite itself: `irsim benchmark {name}`; one episode: `{one}`."
+    yield "\n".join(["## Run it", "", own, *_commands(name)])
+
+
+def _commands(name: str) -> list[str]:
+    """The command of each kept result of a suite, as its page has it."""
+    pages = sorted((skills_directory() / "irsim-benchmark" / "results").glob("*.md"))
+    command = re.compile(rf"^Reproduce: `(irsim benchmark {name}(?: [^`]*)?)`", re.MULTILINE)
+    matches = {page: command.search(page.read_text(encoding="utf-8")) for page in pages}
+    lines = [f"- [{page.stem}](../results/{page.name}): `{line[1]}`" for page, line in matches.items() if line]
+    return ["", "Kept results, and the command of each:", "", *lines] if lines else []
 
 
 def _rows(suite: Suite, scenes: Mapping[str, ResolvedScenario]) -> Iterator[tuple[str, ...]]:

@@ -13,6 +13,7 @@ __all__ = [
     "INTERVALS",
     "POLICIES",
     "ROLES",
+    "SHOWN",
     "Table",
     "about_of",
     "cells_of",
@@ -47,6 +48,8 @@ _DIFFERENCES = (
     ("success", "success"), ("collision", "collision"), ("timeout", "timeout"), ("time_to_goal", "time [s]"),
     ("path_length", "path [m]"),
 )  # fmt: skip
+SHOWN = frozenset(key for columns in (_COLUMNS, _SOMETIMES, _ABOVE_ZERO, _DIFFERENCES) for key, _ in columns)
+"""Keys of all metrics that a report can show over episodes."""
 INTERVALS = (
     "Intervals are 95 %: Wilson's for shares, Newcombe's for their differences, bootstrap for means. Rows over several "
     "scenarios count each episode once, and their intervals resample scenarios, too. Times count robots that arrived."

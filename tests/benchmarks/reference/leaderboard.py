@@ -1,136 +1,199 @@
 """The leaderboard: ``python -m tests.benchmarks.reference.leaderboard`` writes its page from kept episodes.
 
-The kept files (``NAME.csv``) are the only input, so the page can be made again, and checked, without a simulation.
+Its numbers are the rows over all scenarios, and the pairs of policies in them, of the results of which the pages of the
+suites are made.
 """
 
 from __future__ import annotations
 
-import csv
-from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from irsim.benchmarks.summary import estimates
-from irsim.metrics.statistics import newcombe
-from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES
+from irsim.benchmarks.pairs import pairs_of
+from irsim.benchmarks.suite import load_suite
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.benchmarks.summary import ALL, rows_of, summaries_of
+from irsim.policies.catalog import open_policy
+from irsim.policies.description import list_policies
+from irsim.results.benchmark import EpisodeRow, Estimate, Proportion
+from irsim.scenario.behavior_override import parse_behavior
+from tests.benchmarks.reference.write import PAGES, TABLES, episodes_of
 
-__all__ = ["PAGE", "leaderboard", "standings"]
+__all__ = ["LEFT_OUT", "LEFT_OUT_OF_SUITES", "PAGE", "Standing", "leaderboard", "standings", "unlisted_policies"]
 
 PAGE = PAGES / "results.md"
-_KINDS = ("success", "collision", "timeout")
 _ABOUT = """\
 # Which policy is best where, and by how much
 
 <!-- Written by `python -m tests.benchmarks.reference.leaderboard`: do not edit. -->
 
-Shares of episodes in %, over all scenarios and seeds of a suite under one protocol, each episode counted once.
-Brackets are 95 % intervals: scenarios are resampled and then their episodes, and no interval is narrower than Wilson's
-or Newcombe's. *Behind* is the difference in success to the first one, of the same scenarios and seeds. Rows are made
-from the files that the pages of the suites name, with their hashes. `irsim audit` prints such rows of a submission, too
-([audit](../guides/audit.md)). Policies know different things (`irsim policies`), so a lead can be one of information.
-Where policies change places between suites, choose by the scenes that are like yours.
+Shares of episodes in %, over all scenarios and seeds of a suite under one protocol, each episode counted once. Brackets
+are 95 % intervals: scenarios are resampled and then their episodes, and no interval is narrower than Wilson's or
+Newcombe's. *Behind* is the difference in success to the first one, of the same scenarios and seeds. Rows are the ones
+over all scenarios of the page that each heading links, which names the episodes and their hash. `irsim audit` prints
+such rows of a submission, too ([audit](../guides/audit.md)).
 
-Not here: networks (trained without limits of acceleration, `multi_robot` and `multi_robot_freeze` collide in most
-episodes of `random_polygons_v2`; `recipes` of the skill irsim-runner has numbers), `maps_v2`, one policy among others
-([mixed_v2](mixed_v2.md)), and recorded people ([pedestrians](pedestrians.md)), among whom `footprint_orca` comes last:
-45 %, behind `dash` with 62 % and `orca` with 91 %.
+*Knows* is what a policy knows besides its own state and goal, as `irsim policies` prints it. Policies of one class
+stand together, and the class of the best one is first: only they compete with equal means, and a lead over another
+class can be one of information. Where policies change places between suites, choose by the scenes that are like yours.
+Where only `freeze` is listed, one robot drives, and the protocols are the same.
 """
+_OTHERS = """\
+One policy among others is in [mixed_v2](mixed_v2.md), recorded people are in [pedestrians](pedestrians.md): there
+`footprint_orca` comes last, 45 %, behind `dash` with 62 % and `orca` with 91 %.
+"""
+LEFT_OUT = {
+    "sarl_multi_robot": "an episode takes it a second",
+    "sarl": "it leads one robot among people; `recipes` of the skill irsim-runner has its numbers",
+    "crowd": "it leads one robot among people; `recipes` of the skill irsim-runner has its numbers",
+    "random": "it draws its controls",
+    "replay": "it repeats a recording and does not decide",
+    "mixed": "it is several policies ([mixed_v2](mixed_v2.md))",
+    "corridor_social": "it needs a lidar, which no robot of these suites has",
+    "goal_lidar": "it needs a lidar, which no robot of these suites has",
+    "neupan": "it needs a package and a file of its authors",
+    "process": "it is a program that the user brings",
+    "rl_rvo_authors": "its weights are the authors' ([policies of the paper](policies_of_the_paper.md))",
+}
+"""Policy that no table has -> why."""
+LEFT_OUT_OF_SUITES = {
+    ("random_polygons_v2", "sarl_multi_robot"): "an episode takes it a second",
+    ("random_polygons_v2", "sarl"): "it was trained to lead one robot among people",
+}
+"""Suite, and a policy that it has a name for but no table of it has -> why."""
 
 
 class Standing(NamedTuple):
-    """A policy in a suite.
+    """A policy in a row over all scenarios.
 
     Attributes:
         policy: Its name.
-        shares: Shares of its episodes by outcome, in the order success, collision, timeout.
-        interval: 95 % interval of the share of successes.
-        behind: Its success minus the first one's; 0 for the first one.
-        behind_interval: 95 % interval of that difference.
+        knows: Its class of information.
+        episodes: Number of its episodes.
+        shares: Its shares of success, collision and timeout.
+        behind: Its success minus the first one's, with its interval; None for the first one.
     """
 
     policy: str
-    shares: tuple[float, ...]
-    interval: tuple[float, float]
-    behind: float
-    behind_interval: tuple[float, float]
+    knows: str
+    episodes: int
+    shares: tuple[Proportion, Proportion, Proportion]
+    behind: Estimate | None
 
 
-def standings(episodes: Sequence[Mapping[str, str]]) -> list[Standing]:
-    """The policies of one suite and protocol, best first; of seeds with room for all objects.
+def standings(episodes: Sequence[EpisodeRow], policies: Mapping[str, str]) -> list[Standing]:
+    """The policies over all scenarios, the best one first, by the functions that make the rows of a page.
 
     Args:
-        episodes: Lines of a kept file, of one protocol.
+        episodes: Episodes of one protocol.
+        policies: Name of each policy → the policy as text.
     """
-    trials: dict[tuple[str, str], dict[str, str]] = {}
-    for one in episodes:
-        trials.setdefault((one["scenario"], one["seed"]), {})[one["policy"]] = one["outcome"]
-    policies = list(dict.fromkeys(one["policy"] for one in episodes))
-    complete = {
-        key: made
-        for key, made in sorted(trials.items())
-        if len(made) == len(policies) and {*made.values()} <= {*_KINDS}
-    }
-    scenarios = [scenario for scenario, _ in complete]
-    wins = {policy: [made[policy] == "success" for made in complete.values()] for policy in policies}
-    order = sorted(policies, key=lambda policy: -sum(wins[policy]))
-    best, count = wins[order[0]], len(complete)
-    successes = estimates({policy: [*map(float, wins[policy])] for policy in order}, order, scenarios)
-    differences = {p: [float(mine) - other for mine, other in zip(wins[p], best, strict=True)] for p in order}
-    apart = estimates(differences, (), scenarios)
-    ranked = []
-    for policy in order:
-        shares = tuple(sum(made[policy] == kind for made in complete.values()) / count for kind in _KINDS)
-        pairs = Counter(zip(wins[policy], best, strict=True))
-        low, high = newcombe(*(pairs[a, b] for a in (True, False) for b in (True, False)))
-        drawn = apart[policy]
-        assert drawn.low is not None
-        assert drawn.high is not None
-        between = min(low, drawn.low), max(high, drawn.high)
-        own = successes[policy].low or 0.0, successes[policy].high or 0.0
-        ranked.append(Standing(policy, shares, own, sum(differences[policy]) / count, between))
-    return ranked
+    names = {text: name for name, text in policies.items()}
+    summaries = {ALL: summaries_of(episodes, list(dict.fromkeys(one.scenario for one in episodes)), list(names))[ALL]}
+    rows = sorted(rows_of(summaries, list(names), {}), key=lambda one: -one.success.rate)
+    pairs, best = pairs_of(summaries, list(names), {}), rows[0].behavior
+    behind = {one.behavior: one.difference for one in pairs if one.against == best}
+    behind |= {one.against: _negated(one.difference) for one in pairs if one.behavior == best}
+    return [
+        Standing(
+            policy=names[one.behavior],
+            knows=open_policy(one.behavior).knowledge() or "what the scenarios say",
+            episodes=one.episodes,
+            shares=(one.success, one.collision, one.timeout),
+            behind=behind.get(one.behavior),
+        )
+        for one in rows
+    ]
+
+
+def _negated(one: Estimate) -> Estimate:
+    """The difference in the other direction."""
+    assert one.mean is not None
+    assert one.low is not None
+    assert one.high is not None
+    return one.model_copy(update={"mean": 0.0 - one.mean, "low": 0.0 - one.high, "high": 0.0 - one.low})
 
 
 def leaderboard() -> str:
     """The page, of all suites v2 whose episodes are kept by policy."""
-    lines = [_ABOUT]
-    for name, table in TABLES.items():
-        if table.by_role or not table.suite.endswith("_v2"):
-            continue
-        with (FOLDER / f"{name}.csv").open(encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        lines += [f"## [{table.suite}]({name}.md)", ""]
-        lines += ["| protocol | policy | success | collision | timeout | behind |", "|---|---|---|---|---|---|"]
-        leads = []
-        for protocol in dict.fromkeys(row["scenario"].rpartition("/")[2] for row in rows):
-            ranked = standings([row for row in rows if row["scenario"].endswith(f"/{protocol}")])
-            lines += [_row(protocol, one, one is ranked[0]) for one in ranked]
-            leads.append(_lead(protocol, ranked))
-        lines += ["", " ".join(leads), ""]
-    return "\n".join(lines)
+    parts = [_ABOUT, *(part for name in _tables() for part in _section(name))]
+    return "\n".join([*parts, "## Not here", "", *_left_out(), "", _OTHERS])
 
 
-def _row(protocol: str, one: Standing, is_first: bool) -> str:
-    success, collision, timeout = (f"{100 * share:.1f}" for share in one.shares)
-    behind = "–" if is_first else f"{100 * one.behind:.1f} {_brackets(one.behind_interval)}"
-    return f"| {protocol} | `{one.policy}` | {success} {_brackets(one.interval)} | {collision} | {timeout} | {behind} |"
+def _tables() -> list[str]:
+    return [name for name, table in TABLES.items() if table.suite.endswith("_v2") and not table.by_role]
+
+
+def _section(name: str) -> Iterator[str]:
+    """The table of one suite, and who leads."""
+    table, episodes = TABLES[name], episodes_of(name, ("scenario", "policy", "seed", "outcome"))
+    plan = table.plan()
+    with_networks = ", with networks" if name != table.suite else ""
+    yield f"## [{table.suite}{with_networks}]({name}.md)\n"
+    yield f"{len(plan.seeds)} seeds from {plan.seeds[0]:,} on.\n"
+    yield "| protocol | knows | policy | n | success | collision | timeout | behind |"
+    yield "|---" * 8 + "|"
+    leads, protocol_of = [], {one.name: one.protocol for one in plan.scenarios}
+    for protocol in dict.fromkeys(protocol_of.values()):
+        ranked = standings([one for one in episodes if protocol_of[one.scenario] == protocol], plan.policies)
+        for knows in dict.fromkeys(one.knows for one in ranked):
+            yield from (_row(protocol, one) for one in ranked if one.knows == knows)
+        leads.append(_lead(protocol, ranked))
+    yield "\n" + " ".join(leads) + "\n"
+
+
+def _row(protocol: str, one: Standing) -> str:
+    success, collision, timeout = one.shares
+    behind = "–"
+    if one.behind is not None and one.behind.mean is not None:
+        behind = f"{100 * one.behind.mean:.1f} {_brackets(one.behind.low, one.behind.high)}"
+    cells = [protocol, one.knows, f"`{one.policy}`", str(one.episodes)]
+    cells += [f"{100 * success.rate:.1f} {_brackets(success.low, success.high)}"]
+    cells += [f"{100 * share.rate:.1f}" for share in (collision, timeout)]
+    return f"| {' | '.join([*cells, behind])} |"
 
 
 def _lead(protocol: str, ranked: Sequence[Standing]) -> str:
-    """Whether the first one leads for sure, and by how much."""
+    """Whether the first one leads for sure, by how much, and whether it knows the same."""
     first, second = ranked[:2]
-    level = [one.policy for one in ranked[1:] if one.behind_interval[1] >= 0]
+    level = [one.policy for one in ranked[1:] if one.behind is None or one.behind.high is None or one.behind.high >= 0]
     if level:
         *most, last = [f"`{policy}`" for policy in level]
         names = f"{', '.join(most)} and {last}" if most else last
         return f"Under {protocol}, `{first.policy}` is first, but {names} may be as good."
-    low, high = (-100 * bound for bound in reversed(second.behind_interval))
-    lead = f"{-100 * second.behind:.0f} points [{low:.0f}, {high:.0f}]"
-    return f"Under {protocol}, `{first.policy}` leads, {lead} before `{second.policy}`."
+    assert second.behind is not None
+    assert second.behind.mean is not None
+    assert second.behind.low is not None
+    assert second.behind.high is not None
+    lead = f"{-100 * second.behind.mean:.0f} points [{-100 * second.behind.high:.0f}, {-100 * second.behind.low:.0f}]"
+    knows = "" if first.knows == second.knows else f", which knows {second.knows} and not {first.knows}"
+    return f"Under {protocol}, `{first.policy}` leads, {lead} before `{second.policy}`{knows}."
 
 
-def _brackets(interval: tuple[float, float]) -> str:
-    return f"[{100 * interval[0]:.0f}, {100 * interval[1]:.0f}]"
+def unlisted_policies() -> tuple[set[str], set[tuple[str, str]]]:
+    """Policies that no table has, and suite and name of policies that a suite names but no table of it has."""
+    everywhere, of_suites = set[str](), set[tuple[str, str]]()
+    for suite in {TABLES[name].suite for name in _tables()}:
+        plans = [TABLES[name].plan() for name in _tables() if TABLES[name].suite == suite]
+        texts = {text for plan in plans for text in plan.policies.values()}
+        every = suite_plan(suite, policies=[*load_suite(suite)[0].known_policies]).policies
+        of_suites |= {(suite, name) for name, text in every.items() if text not in texts}
+        everywhere |= {str((parse_behavior(text) or {}).get("name", text)) for text in texts}
+    return {one.name for one in list_policies()} - everywhere, of_suites
+
+
+def _left_out() -> Iterator[str]:
+    """Each policy that is left out, and why."""
+    everywhere, of_suites = unlisted_policies()
+    yield from (f"- `{policy}`: {LEFT_OUT[policy]}." for policy in sorted(everywhere))
+    for suite, policy in sorted(of_suites):
+        yield f"- `{policy}` in {suite}: {LEFT_OUT_OF_SUITES[suite, policy]}."
+
+
+def _brackets(low: float | None, high: float | None) -> str:
+    assert low is not None
+    assert high is not None
+    return f"[{100 * low:.0f}, {100 * high:.0f}]"
 
 
 if __name__ == "__main__":

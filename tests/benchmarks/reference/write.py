@@ -1,34 +1,56 @@
 """Keeps results of suites: ``python -m tests.benchmarks.reference.write NAME [FOLDER]`` for a name of ``TABLES``.
 
-It writes the episodes (``NAME.csv``) and the table with intervals (``skills/irsim-benchmark/results/NAME.md``). Pages
-of suites v1 also have the shares that were others before contacts between steps were counted and limits planned with
-(``before/``).
+It runs the policies of the table that have no kept episodes, writes all of them (``NAME.csv.gz``), and makes the page
+of them (``skills/irsim-benchmark/results/NAME.md``). Kept episodes are not run again, but the first ones are, as in
+tests: if one is another, the table is not written, and ``--again`` runs all. With a folder, an interrupted run goes on.
 """
 
 from __future__ import annotations
 
+import argparse
 import csv
-import hashlib
-import io
-import sys
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from irsim.benchmarks.plan import Plan
 from irsim.benchmarks.report.markdown import markdown
-from irsim.benchmarks.stored import run_plan
+from irsim.benchmarks.stored import result_of_episodes, run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.benchmark import EpisodeRow, SuiteResult
-from tests.benchmarks.reference.roles import HEAD, page, values_by_role
+from tests.benchmarks.reference.kept import (
+    FOLDER,
+    Line,
+    cells_of,
+    columns_of,
+    episode_of,
+    is_kept,
+    is_whole,
+    kept_lines,
+    source_of,
+    write,
+)
+from tests.benchmarks.reference.roles import HEAD, page
 
-__all__ = ["FOLDER", "PAGES", "TABLES", "Table", "changes", "counted", "kept", "lines_of", "main"]
+__all__ = [
+    "PAGES",
+    "TABLES",
+    "Table",
+    "changed_lines",
+    "changes",
+    "counted",
+    "episodes_of",
+    "kept_of",
+    "main",
+    "page_of",
+    "result_of",
+]
 
-FOLDER = Path(__file__).parent
 PAGES = FOLDER.parents[2] / "skills" / "irsim-benchmark" / "results"
 
 
@@ -38,10 +60,12 @@ class Table:
 
     Attributes:
         suite: Name of the suite.
-        policies: The policies; None: the policies of the suite.
         quick: Names of the scenarios that the quick tests run again.
+        policies: The policies; None: the policies of the suite.
         again: Names of the scenarios that the slow tests run again; None: all.
-        by_role: Whether ``roles.py`` writes lines and page.
+        by_role: Whether ``roles.py`` makes the page.
+        seeds: Number of seeds; None: the suite's.
+        protocols: The protocols; None: the suite's.
     """
 
     suite: str
@@ -49,15 +73,23 @@ class Table:
     policies: tuple[str, ...] | None = None
     again: tuple[str, ...] | None = None
     by_role: bool = False
+    seeds: int | None = None
+    protocols: tuple[Any, ...] | None = None
 
     def plan(self, **keys: Any) -> Plan:
         """Its plan, or a part of it."""
-        return suite_plan(self.suite, policies=self.policies, **keys)
+        whole = {"policies": self.policies, "seeds": self.seeds, "protocols": self.protocols}
+        return suite_plan(self.suite, **(whole | keys)) if keys else _plan_of(self.suite, *whole.values())
 
-    def lines(self, result: SuiteResult) -> list[str]:
+    def lines(self, result: SuiteResult) -> list[dict[str, str]]:
         """One line per episode."""
         labels = {text: name for name, text in result.policies.items()}
-        return lines_of(result.episodes, labels, values_by_role if self.by_role else _values)
+        return [cells_of(episode, labels[episode.behavior], result.engine) for episode in result.episodes]
+
+
+@cache
+def _plan_of(suite: str, policies: Any, seeds: int | None, protocols: Any) -> Plan:
+    return suite_plan(suite, policies=policies, seeds=seeds, protocols=protocols)
 
 
 TABLES = {
@@ -75,6 +107,16 @@ TABLES = {
         ("orca", "rvo", "dash", "avocado", "footprint_orca"),
         ("robots-5", "robots-10", "step-10-0.05", "step-10-0.2"),
     ),
+    "random_polygons_v2_networks": Table(
+        "random_polygons_v2",
+        ("robots-5",),
+        (
+            *("orca", "rvo", "dash", "avocado", "footprint_orca"),
+            *("multi_robot_v2", "multi_robot", "multi_robot_freeze", "rl_rvo"),
+        ),
+        ("robots-5",),
+        seeds=10,
+    ),
     "circle_swap_v2": Table(
         "circle_swap_v2", ("diff-8",), ("orca", "rvo", "sfm", "dash", "avocado", "footprint_orca"), ("diff-8", "omni-8")
     ),
@@ -82,31 +124,57 @@ TABLES = {
     "clutter_v2": Table("clutter_v2", ("posts-15",), again=("posts-15",)),
     "crowdnav_circle_v2": Table("crowdnav_circle_v2", ("circle-invisible-5",), again=("circle-invisible-5",)),
 }
-_METRICS = ("time_to_goal", "velocity_avg", "path_length", "min_clearance")
 
 
-def lines_of(
-    episodes: Sequence[EpisodeRow], labels: Mapping[str, str], values_of: Callable[[EpisodeRow], list[float | None]]
-) -> list[str]:
-    """One line per episode, numbers in full precision.
+def kept_of(name: str) -> dict[tuple[str, str, int], dict[str, str]]:
+    """Scenario, policy and seed → the kept line, of the episodes of a table that are in its file."""
+    plan, lines = TABLES[name].plan(), kept_lines(name) if is_kept(name) else []
+    every = {(line["scenario"], line["policy"], int(line["seed"])): line for line in lines}
+    wanted = [(one.name, policy, seed) for one in plan.scenarios for policy in plan.policies for seed in plan.seeds]
+    return {key: every[key] for key in wanted if key in every}
+
+
+def episodes_of(name: str, columns: Sequence[str] | None = None) -> list[EpisodeRow]:
+    """The episodes of a table, as its lines have them; None: with all columns."""
+    policies, lines = TABLES[name].plan().policies, kept_of(name).values()
+    chosen = [line if columns is None else {key: line[key] for key in columns} for line in lines]
+    return [episode_of(line, policies[line["policy"]]) for line in chosen]
+
+
+def result_of(name: str) -> SuiteResult:
+    """The result of a table, from its kept lines alone."""
+    result = result_of_episodes(TABLES[name].plan(), episodes_of(name))
+    assert isinstance(result, SuiteResult)
+    engines = dict.fromkeys(line["engine"] for line in kept_of(name).values() if line.get("engine"))
+    return result.model_copy(update={"engine": " and ".join(engines)})
+
+
+def page_of(name: str) -> str:
+    """The page of a table, from its kept lines alone."""
+    if TABLES[name].by_role:
+        return f"{page(kept_lines(name), TABLES[name].plan())}\n{source_of(name)}\n"
+    counts = counted(kept_of(name).values())
+    return "\n".join([markdown(result_of(name)), *changes(name, counts), source_of(name), ""])
+
+
+def changed_lines(name: str, made: Iterable[Line]) -> list[str]:
+    """The episodes that are not the kept ones, in words.
 
     Args:
-        episodes: The episodes.
-        labels: Behavior as text → name of the policy.
-        values_of: The metrics of an episode.
+        name: Name of the table.
+        made: Lines of episodes that were run now.
     """
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    for episode in episodes:
-        shown = ["" if value is None else repr(value) for value in values_of(episode)]
-        rows.writerow(
-            [episode.scenario, labels[episode.behavior], episode.seed, episode.outcome, episode.steps, *shown]
-        )
-    return text.getvalue().splitlines()
-
-
-def _values(episode: EpisodeRow) -> list[float | None]:
-    return [episode.metrics[key] for key in _METRICS]
+    known = kept_of(name)
+    changed = []
+    for line in made:
+        kept = known[line["scenario"], line["policy"], int(line["seed"])]
+        odd = [
+            f"{key} {line.get(key)}, kept {kept[key]}"
+            for key in kept
+            if key != "engine" and kept[key] != line.get(key, "")
+        ]
+        changed += [f"{line['scenario']}, {line['policy']}, seed {line['seed']}: {'; '.join(odd)}"] if odd else []
+    return changed
 
 
 def changes(name: str, outcomes: Mapping[tuple[str, str], Counter[str]]) -> list[str]:
@@ -132,14 +200,7 @@ def changes(name: str, outcomes: Mapping[tuple[str, str], Counter[str]]) -> list
         "broken. Contacts between steps, which were not counted before, are counted and still not judged here. Success "
         f"/ collision / timeout in %, where they differ; all shares of {equal} are the same."
     )
-    return ["## Before and now", "", about, "", "| scenario | policy | before | now |", "|---|---|---|---|", *rows]
-
-
-def kept(name: str) -> str:
-    """The line of a page that says where its episodes are."""
-    path = FOLDER / f"{name}.csv"
-    where = f"`{path.relative_to(FOLDER.parents[2]).as_posix()}` of the repository"
-    return f"\nAll episodes: {where}, SHA-256 `{hashlib.sha256(path.read_bytes()).hexdigest()}`."
+    return ["## Before and now", "", about, "", "| scenario | policy | before | now |", "|---|---|---|---|", *rows, ""]
 
 
 def _shares(counts: Sequence[int]) -> str:
@@ -147,28 +208,56 @@ def _shares(counts: Sequence[int]) -> str:
     return " / ".join(f"{100 * count / sum(counts):.0f}" for count in counts)
 
 
-def counted(episodes: Iterable[Mapping[str, str]]) -> dict[tuple[str, str], Counter[str]]:
-    """(scenario, policy) → number of episodes by outcome, of lines of a kept file."""
+def counted(lines: Iterable[Line]) -> dict[tuple[str, str], Counter[str]]:
+    """(scenario, policy) → number of episodes by outcome."""
     outcomes: dict[tuple[str, str], Counter[str]] = {}
-    for row in episodes:
-        outcomes.setdefault((row["scenario"], row["policy"]), Counter())[row["outcome"]] += 1
+    for line in lines:
+        outcomes.setdefault((line["scenario"], line["policy"]), Counter())[line["outcome"]] += 1
     return outcomes
 
 
-def main(name: str, folder: str | None = None) -> None:
-    """Run a suite and keep its result; with a folder, go on with the episodes that are there."""
-    with nullcontext(folder) if folder else tempfile.TemporaryDirectory() as place:
-        result = run_plan(TABLES[name].plan(), Path(place), resume=folder is not None)
-    assert isinstance(result, SuiteResult)
-    head = HEAD if TABLES[name].by_role else ("scenario", "policy", "seed", "outcome", "steps", *_METRICS)
-    episodes = [",".join(head), *TABLES[name].lines(result)]
-    (FOLDER / f"{name}.csv").write_text("\n".join(episodes) + "\n", encoding="utf-8")
-    if TABLES[name].by_role:
-        text = page(list(csv.DictReader(episodes)), TABLES[name].plan()) + f"{kept(name)}\n"
-    else:
-        text = "\n".join([markdown(result), *changes(name, counted(csv.DictReader(episodes))), kept(name), ""])
-    (PAGES / f"{name}.md").write_text(text, encoding="utf-8")
+def main(name: str, folder: str | None = None, *, again: bool = False) -> None:
+    """Write a table: its episodes and its page.
+
+    Args:
+        name: Name of the table.
+        folder: Folder in which a run that was interrupted goes on.
+        again: Run every episode again.
+    """
+    table, known = TABLES[name], {}
+    if not again:
+        known = {key: line for key, line in kept_of(name).items() if table.by_role or is_whole(line)}
+    plan = table.plan()
+    pairs = [(one.name, seed) for one in plan.scenarios for seed in plan.seeds]
+    missing = [policy for policy in plan.policies if any((one, policy, seed) not in known for one, seed in pairs)]
+    ready = [policy for policy in plan.policies if policy not in missing]
+    if ready:
+        with tempfile.TemporaryDirectory() as place:
+            first = run_plan(table.plan(policies=ready, seeds=1, scenarios=table.quick), Path(place))
+        assert isinstance(first, SuiteResult)
+        if changed := changed_lines(name, table.lines(first)):
+            raise SystemExit("\n".join(["the kept episodes are others than those of this program:", *changed]))
+    if missing:
+        with nullcontext(folder) if folder else tempfile.TemporaryDirectory() as place:
+            result = run_plan(table.plan(policies=missing), Path(place), resume=folder is not None)
+        assert isinstance(result, SuiteResult)
+        known |= {(line["scenario"], line["policy"], int(line["seed"])): line for line in table.lines(result)}
+    keep(
+        name,
+        [known[one.name, policy, seed] for one in plan.scenarios for policy in plan.policies for seed in plan.seeds],
+    )
+
+
+def keep(name: str, lines: Sequence[Line]) -> None:
+    """Write the lines of a table, and its page."""
+    write(name, HEAD if TABLES[name].by_role else columns_of(lines), lines)
+    (PAGES / f"{name}.md").write_text(page_of(name), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("name", choices=TABLES)
+    parser.add_argument("folder", nargs="?", help="go on with the episodes that are there")
+    parser.add_argument("--again", action="store_true", help="run every episode again")
+    given = parser.parse_args()
+    main(given.name, given.folder, again=given.again)
