@@ -54,7 +54,7 @@ INTEROP = "3.11"
 DEBIAN_PEERS = (
     "chromium", "fastddsgen", "g++", "libfastrtps-dev", "libnav-msgs-dev", "libosmesa6", "librecast-dev",
     "libsdformat-dev", "python3-geometry-msgs", "python3-nav-msgs", "python3-rospy", "python3-sensor-msgs",
-    "python3-tf2-msgs", "python3-visualization-msgs", "ros-base", "ros-nav-msgs",
+    "python3-tf2-msgs", "python3-visualization-msgs", "ros-base", "ros-nav-msgs", "xvfb",
 )  # fmt: skip
 """Packages of Debian 12 that bridges meet in tests."""
 PYTHON_PEERS = (

@@ -10,6 +10,7 @@ from irsim.api.read_input import opened_policy, read_scenario
 from irsim.api.take_snapshot import ended_before, extent_of, moved_view, snapshot_of
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix, replacing
+from irsim.common.keywords import answers_misspelt
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
 from irsim.episodes.opening import (
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["animate", "render", "show_part", "write_picture", "write_sheet"]
 
 
+@answers_misspelt
 def render(
     path: str | Path,
     out: str | Path,

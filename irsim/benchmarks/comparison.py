@@ -22,6 +22,7 @@ from irsim.benchmarks.pool import MAX_GROUP, cores, run_tasks
 from irsim.benchmarks.preparation import DEFAULT_SEEDS, prepare
 from irsim.benchmarks.timing import time_behavior, timing_report
 from irsim.common.arguments import check_whole_number
+from irsim.common.keywords import answers_misspelt
 from irsim.episodes.episode import Progress
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import PolicySource
@@ -47,6 +48,7 @@ _COPIED = (
 """Keys of the result of an episode that its row repeats."""
 
 
+@answers_misspelt
 def benchmark(
     files: str | Path | Sequence[str | Path] | Mapping[str, str | Path | Document],
     policies: PolicySource | Sequence[PolicySource] | None = None,

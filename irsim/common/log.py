@@ -1,4 +1,7 @@
-"""A logger per environment: lines ``YYYY-MM-DD HH:mm | LEVEL | message`` on standard output, and in a file if asked."""
+"""A logger per environment: lines ``YYYY-MM-DD HH:mm | LEVEL | message`` on standard output, and in a file if asked.
+
+Hints go to standard error, once in a process, so that they are neither output nor warnings.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +9,15 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import TextIO
 
 __all__ = ["LEVELS", "Logger"]
 
 LEVELS = {"TRACE": 5, "DEBUG": 10, "INFO": 20, "SUCCESS": 25, "WARNING": 30, "ERROR": 40, "CRITICAL": 50}
+
+
+_HINTED: set[str] = set()
+"""Hints of this process that have been given: the next environment of the same file does not repeat them."""
 
 
 class Logger:
@@ -32,11 +40,11 @@ class Logger:
         self._once: set[str] = set()
         self._closed = False
 
-    def _write(self, name: str, message: object) -> None:
+    def _write(self, name: str, message: object, stream: TextIO | None = None) -> None:
         if self._closed or LEVELS[name] < self.level:
             return
         line = f"{time.strftime('%Y-%m-%d %H:%M')} | {name:<8} | {message}"
-        print(line, file=sys.stdout)
+        print(line, file=stream or sys.stdout)
         if self.file is not None:
             with self.file.open("a", encoding="utf-8") as stream:
                 stream.write(line + "\n")
@@ -79,6 +87,12 @@ class Logger:
         self._once.add(key or message)
         write: Callable[[object], None] = self.debug if seen else self.warning
         write(message)
+
+    def hint(self, message: str) -> None:
+        """Say on standard error, at INFO and once in a process, what may help."""
+        if LEVELS["INFO"] >= self.level and message not in _HINTED:
+            _HINTED.add(message)
+            self._write("INFO", message, sys.stderr)
 
     def error_once(self, message: str) -> None:
         """Log at ERROR the first time this message is seen, at DEBUG after that."""

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from irsim.common.arguments import check_steps, check_whole_number
 from irsim.common.arrays import Floats
+from irsim.common.keywords import answers_misspelt
 from irsim.compat.objects.view import make_view
 from irsim.diagnostics.errors import InputError
 from irsim.objects.lifecycle import attach_python
@@ -202,6 +203,7 @@ class Batch:
         self._simulation.reset(chosen, next_scene=mask is not None if random is None else random)
 
 
+@answers_misspelt
 def batch(
     scenario: str | Path | ResolvedScenario,
     n: int,

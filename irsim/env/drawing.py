@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.common.screen import has_screen
 from irsim.env.live import attach_live, carry_out_requests, detach_live
 from irsim.env.state import EnvState
 
@@ -81,6 +82,7 @@ def render(
         mode: Which objects the plot options below apply to: ``dynamic``, ``static`` or ``all``.
         **kwargs: Plot options of objects that hold for this frame only.
     """
+    env._unseen = False
     if env._world.sampling and not env.headless:
         plot = env_plot(env)
         plot.update(mode, **kwargs)
@@ -117,8 +119,26 @@ def save_figure(
 
 def show(env: EnvState) -> None:
     """Show the window and wait until it is closed."""
+    env._unseen = False
     if not env.headless:
         env_plot(env).show()
+
+
+def note_unseen(env: EnvState, steps: int = 1) -> None:
+    """Say once how to see the steps of an environment that was asked for a window, if there is a screen.
+
+    Args:
+        env: An environment that has shown nothing yet.
+        steps: Number of steps of the episode after which it is said.
+    """
+    if env._world.count < steps:
+        return
+    env._unseen = False
+    if has_screen():
+        env.logger.hint(
+            "nothing has been drawn: display=True opens its window at the first env.render(); call it after each "
+            "env.step(), or pass display=False"
+        )
 
 
 def set_title(env: EnvState, title: str) -> None:

@@ -9,7 +9,7 @@ from weakref import ref
 from irsim.compat.objects.view import ScriptObject, make_view
 from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.diagnostics.errors import CodedError
-from irsim.env.drawing import finish_drawing, redraw
+from irsim.env.drawing import finish_drawing, note_unseen, redraw
 from irsim.env.loop import log_collisions
 from irsim.env.object_list import count_ids, restore_objects
 from irsim.env.parameters import EnvParam, WorldParam, checked_step_mode
@@ -33,7 +33,7 @@ def open_world(env: EnvState, world_name: str | Path | ResolvedScenario | None) 
     else:
         scenario, warnings = open_scenario(world_name, strict=env._strict)
         for warning in warnings:
-            env.logger.warning(_one_line(warning))
+            (env.logger.hint if warning.severity == "hint" else env.logger.warning)(_one_line(warning))
     mode = checked_step_mode(env._wanted_mode if env._wanted_mode is not None else scenario.world.step_mode)
     chosen = env._wanted_seed if env._wanted_seed is not None else scenario.world.seed
     chosen = next_seed() if chosen is None else chosen
@@ -143,6 +143,8 @@ def end(env: EnvState, ending_time: float = 3.0, **kwargs: Any) -> None:
     """
     if env._ended and env._plot is None:
         return
+    if env._unseen:
+        note_unseen(env)
     finish_drawing(env, ending_time, **kwargs)
     env._ended = True
     env.logger.info(f"{env} ended after {env._world.time} s")

@@ -7,6 +7,7 @@ from typing import Any, NoReturn
 
 from irsim.common.arguments import check_steps
 from irsim.common.log import LEVELS
+from irsim.env.drawing import note_unseen
 from irsim.env.live import drive_by_keyboard
 from irsim.env.queries import get_object_by_name
 from irsim.env.state import EnvState
@@ -17,6 +18,10 @@ from irsim.simulation.protocols import EpisodeRecorder
 from irsim.simulation.trace import Rollout, record_rollout
 
 __all__ = ["advance", "done", "log_collisions", "pause", "refresh", "resume", "rollout", "step"]
+
+
+_STEPS_UNSEEN = 20
+"""Steps without a frame after which the user is told how to see them."""
 
 
 def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
@@ -77,6 +82,8 @@ def _report_limits(env: EnvState, view: Any, control: Sequence[float]) -> None:
 
 def _after_step(env: EnvState) -> None:
     env._label = env._written_status = None
+    if env._unseen:
+        note_unseen(env, _STEPS_UNSEEN)
     if env._simulation.state.event_count != env._events_seen:
         log_collisions(env)
 

@@ -49,6 +49,7 @@ class EnvState:
         _seed: Seed of the present scenes.
         _next_seed: Seed with which the next random reset starts; None goes on with the present one.
         _wanted_seed, _wanted_mode, _strict: Arguments of ``make``.
+        _unseen: Whether a window was asked for, and nothing has been shown yet.
         _ended: Whether ``end`` was called, without a step after it.
         _limit_warnings: Ids of the objects for which the cut of an action has been logged.
         _events_seen, _events_logged: Number of events at the last look at them, and number of events checked for
@@ -94,6 +95,7 @@ class EnvState:
     _wanted_seed: int | None
     _wanted_mode: str | None
     _strict: bool
+    _unseen: bool
     _ended: bool
     _limit_warnings: set[int]
     _events_seen: int

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from irsim.common.arguments import as_given
 from irsim.common.extras import require
+from irsim.common.keywords import answers_misspelt
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.actions import as_array
 from irsim.learning.pictures import Camera
@@ -50,6 +51,7 @@ class Env(Snapshots, gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[m
 
     metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10}
 
+    @answers_misspelt
     def __init__(self, task: TaskSource, *, render_mode: str | None = None, seed: int | None = None) -> None:
         check_render_mode(render_mode)
         self.worlds = Worlds(task, 1, seed=seed)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.extras import require
+from irsim.common.keywords import answers_misspelt
 from irsim.learning.actions import as_array
 from irsim.learning.gym_env import (
     RENDER_MODES,
@@ -57,6 +58,7 @@ class ParallelEnv(Snapshots, pettingzoo.ParallelEnv[Agent, NDArray[np.float32], 
 
     metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10, "is_parallelizable": True}
 
+    @answers_misspelt
     def __init__(self, task: TaskSource, *, render_mode: str | None = None, seed: int | None = None) -> None:
         check_render_mode(render_mode)
         self.worlds = Worlds(task, 1, seed=seed)

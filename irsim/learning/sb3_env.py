@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.extras import require
+from irsim.common.keywords import answers_misspelt
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.gym_env import action_space, observation_space
 from irsim.learning.ladder import Ladder
 from irsim.learning.pictures import Camera
 from irsim.learning.tasks.files import TaskSource
-from irsim.learning.workers.divided import open_worlds
+from irsim.learning.workers.divided import open_slots
 
 require("learn", "stable_baselines3")
 from stable_baselines3.common.vec_env import VecEnv
@@ -32,7 +33,8 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
 
     Args:
         task: The task: its file, its data, or a task that was read.
-        worlds: Number of worlds.
+        num_envs: Number of slots; a multiple of the number of learners in a world. Default: one world.
+        worlds: Number of worlds, instead of ``num_envs``.
         seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
         threads: Number of threads of all processes together; results do not depend on it.
         workers: Number of processes that the worlds are divided among, this one included; results do not depend on it.
@@ -49,10 +51,18 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
         ArgumentError: There is no such number of workers.
     """
 
+    @answers_misspelt
     def __init__(
-        self, task: TaskSource, worlds: int = 1, *, seed: int | None = None, threads: int = 1, workers: int = 1
+        self,
+        task: TaskSource,
+        num_envs: int | None = None,
+        *,
+        worlds: int | None = None,
+        seed: int | None = None,
+        threads: int = 1,
+        workers: int = 1,
     ) -> None:
-        self.worlds = open_worlds(task, worlds, seed=seed, threads=threads, workers=workers)
+        self.worlds = open_slots(task, num_envs, worlds, seed=seed, threads=threads, workers=workers)
         slots = self.worlds.n * self.worlds.learners
         self.render_mode = "rgb_array"
         self._camera = Camera(self.worlds)

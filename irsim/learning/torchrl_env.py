@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.extras import require
+from irsim.common.keywords import answers_misspelt
 from irsim.learning.tasks.files import TaskSource
-from irsim.learning.workers.divided import open_worlds
+from irsim.learning.workers.divided import open_slots
 
 require("learn", "torch", "torchrl", "tensordict")
 import torch
@@ -21,14 +22,15 @@ __all__ = ["TorchRLEnv"]
 
 
 class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not read
-    """``worlds`` worlds with A learners as an environment of the batch size (worlds * A,), locked.
+    """``num_envs`` learners as an environment of that batch size, locked; n worlds with A learners make n * A entries.
 
     Learners of one world have neighboring entries. An entry whose episode is over before its world's has the
     reward 0 and ``active`` False; it is reset with its world.
 
     Args:
         task: The task: its file, its data, or a task that was read.
-        worlds: Number of worlds.
+        num_envs: Number of entries; a multiple of the number of learners in a world. Default: one world.
+        worlds: Number of worlds, instead of ``num_envs``.
         seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
         threads: Number of threads of all processes together; results do not depend on it.
         workers: Number of processes that the worlds are divided among, this one included; results do not depend on it.
@@ -46,17 +48,19 @@ class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not rea
 
     batch_locked = True
 
+    @answers_misspelt
     def __init__(
         self,
         task: TaskSource,
-        worlds: int = 1,
+        num_envs: int | None = None,
         *,
+        worlds: int | None = None,
         seed: int | None = None,
         threads: int = 1,
         workers: int = 1,
         device: Any = "cpu",
     ) -> None:
-        made = open_worlds(task, worlds, seed=seed, threads=threads, workers=workers)
+        made = open_slots(task, num_envs, worlds, seed=seed, threads=threads, workers=workers)
         size = torch.Size([made.n * made.learners])
         super().__init__(device=device, batch_size=size)
         self.worlds = made

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.arguments import as_given, check_whole_number
+from irsim.common.arguments import as_given
 from irsim.common.extras import require
+from irsim.common.keywords import answers_misspelt
 from irsim.diagnostics.errors import ArgumentError
-from irsim.env.batch import check_worlds
 from irsim.learning.gym_env import (
     RENDER_MODES,
     RESET_FIX,
@@ -24,8 +24,8 @@ from irsim.learning.pictures import Camera
 from irsim.learning.snapshots import Snapshots
 from irsim.learning.step import Result
 from irsim.learning.tasks.files import TaskSource
-from irsim.learning.workers.divided import AnyWorlds, open_worlds
-from irsim.learning.worlds import Autoreset, Worlds
+from irsim.learning.workers.divided import open_slots
+from irsim.learning.worlds import Autoreset
 
 require("gym", "gymnasium")
 from gymnasium.error import ResetNeeded
@@ -78,6 +78,7 @@ class VectorEnv(Snapshots, GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[
 
     _cameras: Sequence[Camera] = ()  # closed even if the arguments are refused
 
+    @answers_misspelt
     def __init__(
         self,
         task: TaskSource,
@@ -91,7 +92,7 @@ class VectorEnv(Snapshots, GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[
         render_mode: str | None = None,
     ) -> None:
         check_render_mode(render_mode)
-        self.worlds = _worlds(task, num_envs, seed, threads, workers)
+        self.worlds = open_slots(task, num_envs, seed=seed, threads=threads, workers=workers)
         self.num_envs = num_envs
         self.render_mode = render_mode
         self._mode = _mode(autoreset_mode)
@@ -218,18 +219,6 @@ class VectorEnv(Snapshots, GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[
             what = f"reset_mask is {as_given(mask)}"
             raise ArgumentError(what, f"give an array of bool of shape ({self.num_envs},) with at least one True")
         return np.asarray(flags.reshape(self.worlds.n, self.worlds.learners).any(axis=1))
-
-
-def _worlds(task: TaskSource, slots: int, seed: int | None, threads: int, workers: int) -> AnyWorlds:
-    one = Worlds(task, 1, seed=seed)
-    if check_whole_number("num_envs", slots, 1) % one.learners:
-        what = f"num_envs is {slots}, and each world has {one.learners} learners"
-        raise ArgumentError(what, f"give a multiple of {one.learners}")
-    if slots == one.learners:
-        return one
-    return open_worlds(
-        task, check_worlds(slots // one.learners, one.scenario), seed=seed, threads=threads, workers=workers
-    )
 
 
 def _mode(given: str | AutoresetMode) -> AutoresetMode:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.common.keywords import answers_misspelt
 from irsim.diagnostics.errors import ArgumentError, PlacementError
 from irsim.env.batch import Batch, check_worlds
 from irsim.learning.actions import Latency, read_actions
@@ -71,6 +72,7 @@ class Worlds:
         ArgumentError: There is no such level.
     """
 
+    @answers_misspelt
     def __init__(
         self, task: TaskSource, n: int = 1, *, seed: int | None = None, threads: int = 1, level: int | None = None
     ) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from irsim.common.keywords import answers_misspelt
 from irsim.common.text import plural
 from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.diagnostics.errors import PlacementError
@@ -27,6 +28,7 @@ from irsim.validation.feasibility.check import feasibility_findings
 __all__ = ["diff", "fix", "report", "report_of", "validate", "warn_of_collisions"]
 
 
+@answers_misspelt
 def validate(
     path: str | Path | None = None,
     *,

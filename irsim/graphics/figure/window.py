@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Callable
 from typing import Any, Protocol
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from irsim.common.screen import WINDOWLESS_BACKENDS, has_screen
 from irsim.graphics.figure.figure import inches
 
 __all__ = ["LiveCanvas", "LiveFigure", "Shown", "Window", "has_screen", "open_window"]
@@ -64,18 +63,6 @@ class LiveCanvas(FigureCanvasAgg):
         shown = self.figure.shown() if isinstance(self.figure, LiveFigure) else None
         if shown is not None and shown.is_outdated():
             self.draw()  # type: ignore[no-untyped-call]
-
-
-_WINDOWLESS_BACKENDS = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
-
-
-def has_screen() -> bool:
-    """Whether a window can appear: Linux needs an X or Wayland display, and MPLBACKEND can rule windows out."""
-    if os.environ.get("MPLBACKEND", "").lower() in _WINDOWLESS_BACKENDS:
-        return False
-    if sys.platform.startswith("linux"):
-        return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
-    return True
 
 
 class Window:
@@ -138,7 +125,7 @@ def open_window(size: tuple[float, float], dpi: float, *, full: bool, title: str
         return None
     manager = figure.canvas.manager
     if (
-        pyplot.get_backend().lower() in _WINDOWLESS_BACKENDS
+        pyplot.get_backend().lower() in WINDOWLESS_BACKENDS
         or manager is None
         or not hasattr(figure.canvas, "copy_from_bbox")
     ):

@@ -100,7 +100,7 @@ def train(
     one = Worlds(task, 1)
     torch.set_num_threads(threads)
     worlds = max(1, -(-settings.slots // one.learners))
-    with closing(SB3VecEnv(task, worlds, threads=threads, workers=workers)) as env:
+    with closing(SB3VecEnv(task, worlds=worlds, threads=threads, workers=workers)) as env:
         if not resume:
             run.begin(opened, where, one.scenario.map_files, settings)
         _run_rounds(run, env, task, opened, settings, max_time=max_time, threads=threads, on_round=on_round)

@@ -11,9 +11,10 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.arguments import as_given
+from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError, InputError
+from irsim.env.batch import check_worlds
 from irsim.learning.actions import read_actions
 from irsim.learning.step import Result, Step
 from irsim.learning.tasks.files import TaskSource
@@ -23,7 +24,7 @@ from irsim.learning.workers.process import Worker, stop
 from irsim.learning.worlds import Autoreset, Worlds
 from irsim.simulation.simulation import Simulation
 
-__all__ = ["AnyWorlds", "DividedWorlds", "open_worlds"]
+__all__ = ["AnyWorlds", "DividedWorlds", "open_slots", "open_worlds"]
 
 MAX_WORKERS = 256
 """Largest number of processes."""
@@ -281,3 +282,40 @@ def open_worlds(
     if min(workers, n) < 2:
         return Worlds(task, n, seed=seed, threads=threads, level=level)
     return DividedWorlds(task, n, workers, seed=seed, threads=threads, level=level)
+
+
+def open_slots(
+    task: TaskSource,
+    num_envs: int | None,
+    worlds: int | None = None,
+    *,
+    seed: int | None = None,
+    threads: int = 1,
+    workers: int = 1,
+) -> AnyWorlds:
+    """Open the worlds of as many learners as a learning library asks for.
+
+    Args:
+        task: The task: its file, its data, or a task that was read.
+        num_envs: Number of learners of all worlds together; None: those of ``worlds``.
+        worlds: Number of worlds, instead of ``num_envs``; None: one.
+        seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
+        threads: Number of threads of all processes together.
+        workers: Number of processes, this one included.
+
+    Raises:
+        ArgumentError: The number is not one of whole worlds, or given in both ways.
+        Others: as :func:`open_worlds`.
+    """
+    if num_envs is not None and worlds is not None:
+        raise ArgumentError("num_envs and worlds are two names of one number", "give only num_envs")
+    if num_envs is None:
+        return open_worlds(task, 1 if worlds is None else worlds, seed=seed, threads=threads, workers=workers)
+    one = Worlds(task, 1, seed=seed)
+    if check_whole_number("num_envs", num_envs, 1) % one.learners:
+        what = f"num_envs is {num_envs}, and each world has {one.learners} learners"
+        raise ArgumentError(what, f"give a multiple of {one.learners}")
+    if num_envs == one.learners:
+        return one
+    n = check_worlds(num_envs // one.learners, one.scenario)
+    return open_worlds(task, n, seed=seed, threads=threads, workers=workers)

@@ -11,6 +11,7 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.evaluation import evaluate_policy
 from torchrl.envs.utils import check_env_specs
 
+from irsim.diagnostics.errors import ArgumentError
 from irsim.learning import SB3VecEnv, TorchRLEnv, VectorEnv
 from tests.learning.tasks import crowd, lidar_among_boxes, task
 
@@ -66,7 +67,7 @@ def test_results_do_not_depend_on_the_number_of_workers(curriculum: Any) -> None
 
 def test_robots_share_a_policy_and_waiting_ones_say_so() -> None:
     near, far = {"state": [8.65, 5, 0]}, {"state": [1, 2, 0], "goal": [9, 2]}
-    env = SB3VecEnv(task(near, far, protocol="freeze", horizon=0.4), 2)
+    env = SB3VecEnv(task(near, far, protocol="freeze", horizon=0.4), worlds=2)
     env.reset()
     ahead = np.tile([1.0, 0.0], (4, 1))
     _, _, first, infos = env.step(ahead)
@@ -96,8 +97,18 @@ def test_ppo_learns_to_drive_ahead() -> None:
 
 
 def test_a_crowd_is_learnt_in() -> None:
-    env = SB3VecEnv(crowd(3), 2)
+    env = SB3VecEnv(crowd(3), 6)
     PPO("MlpPolicy", env, n_steps=16, batch_size=32, device="cpu").learn(200)
+
+
+@pytest.mark.parametrize("kind", [SB3VecEnv, TorchRLEnv, VectorEnv])
+def test_num_envs_counts_the_learners_of_all_worlds(kind: Any) -> None:
+    env = kind(crowd(3), num_envs=6)
+    assert env.worlds.n == 2
+    with pytest.raises(ArgumentError, match="num_envs is 4, and each world has 3 learners"):
+        kind(crowd(3), num_envs=4)
+    with pytest.raises(TypeError, match=r"'num_env'\. Did you mean 'num_envs'\?"):
+        kind(crowd(3), num_env=6)
 
 
 # TorchRL --------------------------------------------------------------------------------------------------------------
@@ -109,7 +120,7 @@ CHOICES = {"choices": [[0, 0], [1, 0], [0.5, 1]]}
     ids=["crowd", "controls", "choices"],
 )  # fmt: skip
 def test_the_check_of_torchrl_passes(made: dict[str, Any]) -> None:
-    check_env_specs(TorchRLEnv(made, 2))
+    check_env_specs(TorchRLEnv(made, worlds=2))
 
 
 @pytest.mark.parametrize("workers", [1, 2])
