@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.arguments import as_given
+from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.extras import require
 from irsim.common.keywords import answers_misspelt
 from irsim.diagnostics.errors import ArgumentError
@@ -92,7 +92,8 @@ class VectorEnv(Snapshots, GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[
         render_mode: str | None = None,
     ) -> None:
         check_render_mode(render_mode)
-        self.worlds = open_slots(task, num_envs, seed=seed, threads=threads, workers=workers)
+        slots = check_whole_number("num_envs", num_envs, 1)
+        self.worlds = open_slots(task, slots, seed=seed, threads=threads, workers=workers)
         self.num_envs = num_envs
         self.render_mode = render_mode
         self._mode = _mode(autoreset_mode)

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -68,6 +69,6 @@ def test_who_wants_no_window_is_told_nothing(program: str, variables: dict[str, 
     ],
 )
 def test_a_misspelt_argument_is_answered_with_the_right_one(word: str, meant: str) -> None:
-    for function in (irsim.make, irsim.Env):
-        with pytest.raises(TypeError, match=rf"{function.__name__}\(\) .* '{word}'\. Did you mean '{meant}'\?"):
-            function("room.yaml", **{word: 1})
+    wrong: Any = {word: 1}
+    with pytest.raises(TypeError, match=rf"make\(\) .* '{word}'\. Did you mean '{meant}'\?"):
+        irsim.make("room.yaml", **wrong)
