@@ -5,6 +5,8 @@ Each command only reads its options, calls a function of another package that do
 
 from __future__ import annotations
 
+import sys
+
 from irsim.common.installed import ConflictError, refuse_conflicts
 
 __all__ = ["main"]
@@ -23,6 +25,7 @@ def main() -> None:
         prepare_streams()
         app(prog_name="irsim")
     except KeyboardInterrupt:  # during an import, before a command can handle it
+        print("interrupted before it began", file=sys.stderr)
         raise SystemExit(130) from None
     except OSError as error:  # while printing outside a command, such as --help to a full disk
         from irsim.cli.output import silence_stdout

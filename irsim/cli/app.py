@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from irsim.cli.guard import handle_errors
+from irsim.cli.guard import INTERRUPTED, again, handle_errors, say_interrupted
 from irsim.cli.sentences import SENTENCES
 from irsim.common.installed import version
 
@@ -74,6 +74,14 @@ class Commands(TyperGroup):
         command = typer.main.get_command(target)
         command.name = cmd_name
         return command
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run a command; Ctrl-C while it is imported ends it as later."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            say_interrupted(f"again: {again()}")
+            raise typer.Exit(INTERRUPTED) from None
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write the help."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,10 +13,11 @@ from irsim.api.submission import write_submission
 from irsim.benchmarks import DEFAULT_SEEDS, benchmark
 from irsim.benchmarks.plan import file_plan
 from irsim.benchmarks.seeds import seeds_from
-from irsim.benchmarks.stored import default_folder, last_folder, resume_benchmark, run_plan
+from irsim.benchmarks.stored import PLAN, default_folder, last_folder, resume_benchmark, run_plan
 from irsim.benchmarks.suite import is_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.findings import limits_for
+from irsim.cli.guard import again, going_on
 from irsim.cli.output import console, progress
 from irsim.diagnostics.errors import InputError
 from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
@@ -74,17 +76,20 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
         if wanted.submit:
             manifests.append(write_submission(result, folder))
 
-    with progress("simulating") as report:
+    folders = list[Path]()
+    with going_on(lambda: _go_on(folders, wanted)), progress("simulating") as report:
         if not wanted.files:
             if not wanted.resume:
                 raise InputError("there is nothing to run", "give scenario files, a suite, or --resume")
             folder = wanted.folder or last_folder()
+            folders.append(folder)
             result = resume_benchmark(
                 folder, workers=wanted.workers, cluster=wanted.cluster, progress=report, limits=limits, finish=finish
             )
         elif suites or wanted.folder is not None or wanted.resume:
             plan = _suite(suites[0], wanted) if suites else _plan(wanted)
             folder = wanted.folder or default_folder(plan)
+            folders.append(folder)
             result = run_plan(
                 plan,
                 folder,
@@ -110,6 +115,19 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
     for manifest in manifests:
         out.print(f"submission: {manifest}; check it: irsim audit {manifest.parent}", soft_wrap=True)
     return result
+
+
+def _go_on(folders: Sequence[Path], wanted: Wanted) -> str:
+    """How an interrupted benchmark goes on."""
+    if not folders:
+        return f"no episode is kept without a folder; again, and kept: {again(['-o', 'results'])}"
+    [folder] = folders
+    if not (folder / PLAN).is_file():
+        return f"again: {again()}"
+    how = ["--submission" if wanted.submit else "-o", str(folder)]
+    for option, value in (("--workers", wanted.workers), ("--cluster", wanted.cluster)):
+        how += [option, str(value)] if value is not None else []
+    return f"finished episodes are kept; go on: {shlex.join(['irsim', 'benchmark', '--resume', *how])}"
 
 
 def _suite(name: str, wanted: Wanted) -> Plan:

@@ -11,6 +11,7 @@ from rich.text import Text
 from irsim.bridges.export.episode import CHOICES
 from irsim.bridges.export.export import export_run
 from irsim.bridges.export.registry import format_names
+from irsim.cli.guard import again, going_on
 from irsim.cli.options import Json
 from irsim.cli.output import console, print_json, progress
 from irsim.common.text import plural
@@ -83,7 +84,7 @@ def export(
     chosen: str | list[str] | None = objects
     if objects is not None and objects not in CHOICES:
         chosen = [name.strip() for name in objects.split(",") if name.strip()]
-    with progress("exporting") as report:
+    with going_on(lambda: f"nothing was written; again: {again()}"), progress("exporting") as report:
         result = export_run(
             runs or ["last"],
             out,

@@ -5,11 +5,12 @@ from __future__ import annotations
 import functools
 import json
 import os
+import shlex
 import signal
 import sys
 import threading
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn, ParamSpec, TypeVar
@@ -21,7 +22,16 @@ from irsim.common.files import is_disk_full
 from irsim.common.text import clean
 from irsim.diagnostics.errors import IrsimError, ScenarioError, ScenarioNotFoundError, said_by_core
 
-__all__ = ["FAILED", "INTERRUPTED", "INVALID", "ended_in_order", "handle_errors"]
+__all__ = [
+    "FAILED",
+    "INTERRUPTED",
+    "INVALID",
+    "again",
+    "ended_in_order",
+    "going_on",
+    "handle_errors",
+    "say_interrupted",
+]
 
 FAILED = 1
 """Exit code of a command that could not finish."""
@@ -48,8 +58,8 @@ def handle_errors(command: Callable[P, R]) -> Callable[P, R]:
             result = command(*args, **kwargs)
             sys.stdout.flush()
             return result
-        except KeyboardInterrupt:
-            typer.echo("interrupted", err=True)
+        except KeyboardInterrupt as stop:
+            say_interrupted(getattr(stop, "go_on", f"again: {again()}"))
             raise typer.Exit(INTERRUPTED) from None
         except BrokenPipeError:
             silence_stdout()
@@ -60,6 +70,40 @@ def handle_errors(command: Callable[P, R]) -> Callable[P, R]:
             raise typer.Exit(_report(error, as_json=bool(kwargs.get("json_output")))) from None
 
     return call
+
+
+@contextmanager
+def going_on(command: Callable[[], str]) -> Iterator[None]:
+    """Have Ctrl-C name the command that goes on with what runs here.
+
+    Args:
+        command: Returns the end of the sentence: what is kept, and the command.
+    """
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        stop.go_on = command()  # type: ignore[attr-defined] # read by handle_errors
+        raise
+
+
+def again(extra: Sequence[str] = ()) -> str:
+    """The words of this command, as a user types them.
+
+    Args:
+        extra: Further words.
+    """
+    return shlex.join(["irsim", *sys.argv[1:], *extra])
+
+
+def say_interrupted(go_on: str) -> None:
+    """Print that a command was interrupted, in one line, and leave the end of the process undisturbed.
+
+    Args:
+        go_on: How to go on.
+    """
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    typer.echo(f"interrupted; {go_on}", err=True)
 
 
 @contextmanager

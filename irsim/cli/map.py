@@ -16,7 +16,7 @@ from irsim.bridges.maps.importing import import_map
 from irsim.bridges.maps.importing import list_levels as only_list
 from irsim.bridges.maps.ros_server import export_map
 from irsim.cli.findings import import_user_modules
-from irsim.cli.guard import handle_errors
+from irsim.cli.guard import again, going_on, handle_errors
 from irsim.cli.options import File, Imports, Json, Seed
 from irsim.cli.output import console, print_json
 from irsim.diagnostics.errors import InputError
@@ -261,12 +261,15 @@ def import_(
         "root": root,
         "layers": tuple(layer) if layer else None,
     }
-    if list_levels:
-        result = only_list(file, **options)
-    elif out is None:
-        raise InputError("the scenario to write is not named", "add -o scene.yaml, or --list-levels to only look")
-    else:
-        result = import_map(file, out, ros_map=ros_map, robot=robot, obstacles=obstacles, overwrite=force, **options)
+    with going_on(lambda: f"nothing was written; again: {again()}"):
+        if list_levels:
+            result = only_list(file, **options)
+        elif out is None:
+            raise InputError("the scenario to write is not named", "add -o scene.yaml, or --list-levels to only look")
+        else:
+            result = import_map(
+                file, out, ros_map=ros_map, robot=robot, obstacles=obstacles, overwrite=force, **options
+            )
     if json_output:
         print_json(result)
     else:

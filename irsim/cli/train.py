@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
+import shlex
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from irsim.cli.findings import print_findings
-from irsim.cli.guard import INVALID
+from irsim.cli.guard import INVALID, again, going_on
 from irsim.cli.output import console
 from irsim.common.extras import require
-from irsim.learning.training.run_folder import RunFolder
+from irsim.learning.training.run_folder import SETTINGS_FILE, RunFolder
 from irsim.learning.training.settings import read_settings
 from irsim.validation.file_reports import task_report
 
@@ -116,11 +117,22 @@ def train(
         )
     out_console = console()
     show: Any = _Progress(out_console)
-    best = run(
-        task or out / "task.yaml", out, settings, resume=resume, steps=wanted if resume else None, max_time=max_time,
-        threads=threads, on_round=show, **more,
-    )  # fmt: skip
+    with going_on(lambda: _go_on(out, threads, workers)):
+        best = run(
+            task or out / "task.yaml", out, settings, resume=resume, steps=wanted if resume else None,
+            max_time=max_time, threads=threads, on_round=show, **more,
+        )  # fmt: skip
     out_console.print(f"best model: {best}; irsim export-policy {out} policy.npz makes a file that needs no torch")
+
+
+def _go_on(out: Path, threads: int, workers: int) -> str:
+    """How an interrupted training goes on."""
+    if not (out / SETTINGS_FILE).is_file():
+        return f"again: {again()}"
+    how = ["-o", str(out)]
+    for option, value in (("--threads", threads), ("--workers", workers)):
+        how += [option, str(value)] if value > 1 else []
+    return f"finished rounds are kept; go on: {shlex.join(['irsim', 'train', '--resume', *how])}"
 
 
 def _let_threads_sleep() -> None:

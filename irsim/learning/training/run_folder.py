@@ -26,7 +26,10 @@ from irsim.runs.files import lock_file
 from irsim.scenario.messages.translate import option_message, option_problems
 
 S = TypeVar("S", TrainingSettings, SarlSettings)
-__all__ = ["RunFolder", "merit"]
+__all__ = ["SETTINGS_FILE", "RunFolder", "merit"]
+
+SETTINGS_FILE = "settings.yaml"
+"""What a training was asked for: a folder with it can go on."""
 
 
 def merit(facts: Mapping[str, Any]) -> tuple[float, float]:
@@ -99,7 +102,7 @@ class RunFolder:
     def keep(self, settings: AnySettings) -> None:
         """Write the settings."""
         text = yaml.safe_dump(settings.model_dump(mode="json"), sort_keys=False)
-        write_atomically(self.path / "settings.yaml", text)
+        write_atomically(self.path / SETTINGS_FILE, text)
 
     def settings(self) -> AnySettings:
         """The settings of the training in the folder.
@@ -107,7 +110,7 @@ class RunFolder:
         Raises:
             ArgumentError: The folder holds no training.
         """
-        file = self.path / "settings.yaml"
+        file = self.path / SETTINGS_FILE
         if not file.is_file():
             raise ArgumentError(f"{self.path} holds no training", "leave out --resume to begin one")
         try:
