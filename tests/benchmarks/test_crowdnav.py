@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from itertools import islice
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from irsim.benchmarks.suite import load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.env import Env
 from irsim.scenario.open import read_scenario
-from tests.benchmarks.crowdnav import same_scenes, with_rvo2
+from tests.benchmarks.crowdnav import changes, same_scenes, with_rvo2
 from tests.benchmarks.crowdnav.write import FILE, rows
 
 LINES = FILE.read_text(encoding="utf-8").splitlines()[1:]
@@ -119,6 +120,19 @@ def test_irsim_has_the_outcome_of_rvo2_in_each_of_the_500_scenes(capsys: pytest.
     row, compared = capsys.readouterr().out.splitlines()
     assert f"| irsim, the 500 scenes of CrowdNav {row}" in PAGE.read_text(encoding="utf-8")
     assert compared.startswith("same outcome as RVO2 in 500 of 500 episodes, same time in 216 of the 226")
+
+
+def test_the_page_has_a_row_for_each_change() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    assert [name for name in changes.CHANGES if f"\n| {name} | " not in page] == []
+    unchanged, _, wide = (line.rsplit(" | ", 3)[1:] for line in islice(changes.rows(seeds=8), 3))
+    assert float(wide[0]) > float(unchanged[0])  # 0.2 m more distance
+
+
+@pytest.mark.slow(60)
+def test_the_rows_of_the_changes_are_derived_again() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    assert [line for line in changes.rows() if line not in page] == []
 
 
 def test_a_person_keeps_its_velocity_within_a_step_and_takes_the_new_one_at_its_end() -> None:

@@ -40,7 +40,7 @@ def test_another_number_on_the_page_is_named() -> None:
 
 
 def test_the_tables_of_1000_episodes_have_the_form_of_the_page() -> None:
-    rows = runs.kept(runs.TABLE_2)
+    rows = runs.kept_table_2()
     page = PAGE.read_text(encoding="utf-8")
     made, shown = tables.full_table(rows).splitlines(), tables.on_page(page, "full").splitlines()
     assert made[:2] == shown[:2]

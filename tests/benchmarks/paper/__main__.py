@@ -24,7 +24,7 @@ PAGE = PAGES / "policies_of_the_paper.md"
 
 def from_kept() -> dict[str, str]:
     """The tables of the page whose episodes are kept, by name."""
-    rows = runs.kept(runs.TABLE_2)
+    rows = runs.kept_table_2()
     return {
         "shares": tables.shares_table(rows),
         "beside": tables.beside_table(rows),
@@ -93,7 +93,7 @@ def _made(check: bool, full: bool, write: bool) -> tuple[dict[str, str], list[st
         return {"full": tables.full_table(rows)}, [f"{sentence} {'Equal' if is_there else 'differs'}"]
     rows = runs.table_2(_say)
     made = {"shares": tables.shares_table(rows), "beside": tables.beside_table(rows)}
-    lines = _against(rows, runs.kept(runs.TABLE_2), "table_2.csv")
+    lines = _against(rows, runs.kept_table_2(), "table_2")
     if VARIABLE not in os.environ:
         _say(f"{VARIABLE} names no file, so the tables of the authors' weights are not run")
         return made, lines
@@ -101,15 +101,15 @@ def _made(check: bool, full: bool, write: bool) -> tuple[dict[str, str], list[st
     if write:
         runs.keep(runs.AUTHORS, own)
         runs.keep_circle(ring)
-    lines += _against(own, runs.kept(runs.AUTHORS), "authors.csv")
+    lines += _against(own, runs.kept(runs.AUTHORS), "authors")
     return made | {"authors": tables.authors_table([*rows, *own]), "circle": tables.circle_table(ring)}, lines
 
 
 def _part(seeds: int) -> list[str]:
     """Lines about the first episodes of each cell."""
-    lines = _against(runs.table_2(_say, seeds), runs.kept(runs.TABLE_2), "table_2.csv")
+    lines = _against(runs.table_2(_say, seeds), runs.kept_table_2(), "table_2")
     if VARIABLE in os.environ:
-        lines += _against(runs.authors(seeds), runs.kept(runs.AUTHORS), "authors.csv")
+        lines += _against(runs.authors(seeds), runs.kept(runs.AUTHORS), "authors")
     return lines
 
 

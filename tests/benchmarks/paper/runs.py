@@ -12,14 +12,36 @@ from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.benchmark import SuiteResult
 from tests.benchmarks.authors_circle import outcomes
 from tests.benchmarks.paper.tables import AUTHORS_SEEDS, POLICIES, Circle
-from tests.benchmarks.reference.write import FOLDER, TABLES
+from tests.benchmarks.reference.kept import kept_lines
+from tests.benchmarks.reference.write import TABLES
 
-__all__ = ["AUTHORS", "CIRCLE", "authors", "circle", "full", "keep", "keep_circle", "kept", "kept_circle", "table_2"]
+__all__ = [
+    "AUTHORS",
+    "CIRCLE",
+    "authors",
+    "circle",
+    "full",
+    "keep",
+    "keep_circle",
+    "kept",
+    "kept_circle",
+    "kept_table_2",
+    "table_2",
+]
 
 SUITE = "random_polygons_v1"
-TABLE_2 = FOLDER / "table_2.csv"
 AUTHORS, CIRCLE = (Path(__file__).with_name(name) for name in ("authors.csv", "circle.csv"))
-HEAD = "scenario,policy,seed,outcome,steps,time_to_goal,velocity_avg,path_length,min_clearance"
+HEAD = (
+    "scenario",
+    "policy",
+    "seed",
+    "outcome",
+    "steps",
+    "time_to_goal",
+    "velocity_avg",
+    "path_length",
+    "min_clearance",
+)
 Report = Callable[[str], None]
 Row = dict[str, str]
 
@@ -28,7 +50,11 @@ def _rows(plan: Plan) -> list[Row]:
     """The episodes of a plan as lines of a kept file."""
     result = measure_plan(plan)
     assert isinstance(result, SuiteResult)
-    return list(csv.DictReader([HEAD, *TABLES["table_2"].lines(result)]))
+    return _columns(TABLES["table_2"].lines(result))
+
+
+def _columns(lines: Sequence[Row]) -> list[Row]:
+    return [{key: line[key] for key in HEAD} for line in lines]
 
 
 def table_2(report: Report, seeds: int | None = None) -> list[Row]:
@@ -69,6 +95,11 @@ def circle(report: Report, seeds: int = 100) -> Iterator[Circle]:
         report(f"the authors' circle with {robots} robots is done")
 
 
+def kept_table_2() -> list[Row]:
+    """The kept episodes of the page."""
+    return _columns(kept_lines("table_2"))
+
+
 def kept(path: Path) -> list[Row]:
     """The rows of a kept file."""
     with path.open(encoding="utf-8") as file:
@@ -78,7 +109,7 @@ def kept(path: Path) -> list[Row]:
 def keep(path: Path, rows: Sequence[Row]) -> None:
     """Write a kept file."""
     with path.open("w", encoding="utf-8", newline="") as file:
-        written = csv.DictWriter(file, HEAD.split(","), lineterminator="\n")
+        written = csv.DictWriter(file, HEAD, lineterminator="\n")
         written.writeheader()
         written.writerows(rows)
 
