@@ -20,17 +20,18 @@ _EXPORT = re.compile(r"^export (?=(?:async )?function |const |let |class )", re.
 _FIRST = "main"
 
 
-def one_page(sources: Path, script: str, *policy: str, **parts: str) -> str:
+def one_page(sources: Path, script: str, *policy: str, variables: str = "", **parts: str) -> str:
     """The page of a folder as text.
 
     Args:
         sources: The folder: it has ``page.html``, whose ``{{name}}`` are replaced, and one style sheet.
         script: The script of the page.
+        variables: Rules that come before those of the style sheet.
         *policy: Further rules of its content security policy, which allows only this style sheet and script.
         **parts: Name of a place in ``page.html`` -> the HTML there.
     """
     [sheet] = sources.glob("*.css")
-    style = sheet.read_text(encoding="utf-8")
+    style = variables + sheet.read_text(encoding="utf-8")
     strict = f'"use strict";\n(() => {{\n{script}}})();\n'
     rules = ("default-src 'none'", "base-uri 'none'", "form-action 'none'", *policy)
     hashes = (f"style-src {_fingerprint(style)}", f"script-src {_fingerprint(strict)}")

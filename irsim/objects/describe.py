@@ -12,6 +12,7 @@ from irsim.common.arrays import Floats
 from irsim.common.installed import version
 from irsim.common.outline import BodyPart, Cells, Polygon, outline
 from irsim.components.maps._site import HALF, UNKNOWN
+from irsim.objects.drawing.kinds import kind_of
 from irsim.objects.views import views
 from irsim.options.colors import rgb
 from irsim.scenario.resolve.resolved import ObjectRecord
@@ -99,6 +100,7 @@ def _look(simulation: Simulation, builder: SceneBuilder, row: int) -> Look:
         float(style.obj_alpha),
         goal=view.record.role == "robot" or bool(style.show_goal),
         arrow=bool(style.show_arrow),
+        kind=kind_of(view.record),
     )
 
 

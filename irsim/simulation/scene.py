@@ -61,12 +61,14 @@ class Look:
         alpha: Opacity, from 0 to 1.
         goal: Whether its goal is drawn.
         arrow: Whether an arrow shows where it points.
+        kind: ``robot``, ``person``, ``thing`` (it moves, but is neither) or ``still``.
     """
 
     color: tuple[float, float, float]
     alpha: float = 1.0
     goal: bool = False
     arrow: bool = False
+    kind: Literal["robot", "person", "thing", "still"] = "still"
 
 
 @dataclass(frozen=True)

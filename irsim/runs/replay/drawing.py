@@ -6,6 +6,7 @@ import json
 import math
 import zlib
 from collections.abc import Sequence
+from dataclasses import astuple
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,8 +15,8 @@ from numpy.typing import NDArray
 from irsim.common.text import clean
 from irsim.graphics.scene.bodies import geometry_of
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Region
-from irsim.graphics.scene.style import Palette
-from irsim.simulation.scene import Lidar, SceneDescription
+from irsim.graphics.scene.theme import THEMES, Theme, seen
+from irsim.simulation.scene import Lidar, Look, SceneDescription
 
 if TYPE_CHECKING:
     from irsim.scenario.model.zones import Zone
@@ -49,7 +50,8 @@ def page_objects(scene: SceneDescription) -> tuple[list[dict[str, Any]], list[di
                 "drive": one.drive,
                 "arrival": one.threshold,
                 "shape": shapes.setdefault(text, len(shapes)) if text else -1,
-                "color": _hex(one.look.color),
+                "kind": one.look.kind,
+                "shades": {theme.name: _shades(theme, one.look) for theme in THEMES.values()},
                 "alpha": round(one.look.alpha, 3),
                 "goal": one.look.goal,
                 "arrow": one.look.arrow,
@@ -85,16 +87,24 @@ def _runs(cells: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def page_zones(zones: Sequence[Zone]) -> list[dict[str, Any]]:
-    """Zones with their ``name``, ``color``, outline, and the place ``at`` of their name."""
+    """Zones with their ``name``, ``colors`` by theme, outline, and the place ``at`` of their name."""
     drawn = list[dict[str, Any]]()
     for zone in zones:
         left, _, _, top = zone.bounds
-        color = _hex(Palette().zone if zone.color is None else zone.color)
+        colors = {
+            theme.name: seen(theme.zone if zone.color is None else zone.color, theme.paper, theme.least_edge)
+            for theme in THEMES.values()
+        }
         shape = {"line" if zone.is_line else "rings": _flat(zone.points) if zone.is_line else [_flat(zone.points)]}
         if zone.circle is not None:
             shape = {"circle": [_rounded(value) for value in (*zone.circle.center, zone.circle.radius)]}
-        drawn.append({"name": clean(zone.name), "color": color, "at": [_rounded(left), _rounded(top)], **shape})
+        drawn.append({"name": clean(zone.name), "colors": colors, "at": [_rounded(left), _rounded(top)], **shape})
     return drawn
+
+
+def _shades(theme: Theme, look: Look) -> list[str]:
+    """Fill, edge, name and dart of an object in one theme."""
+    return list(astuple(theme.shades(look.kind, look.color)))
 
 
 def _lidar(lidar: Lidar, row: int) -> dict[str, Any]:
@@ -126,13 +136,6 @@ def _flat(points: Any) -> list[float]:
 
 def _rounded(value: float) -> float:
     return round(value, _DECIMALS) if math.isfinite(value) else 0.0
-
-
-def _hex(color: Any) -> str:
-    """A colour of a scenario as ``#rrggbb``."""
-    from matplotlib.colors import to_hex
-
-    return str(to_hex("black" if color is None or color == "none" else color))
 
 
 Integers = NDArray[np.int32]

@@ -7,6 +7,7 @@ import html
 from pathlib import Path
 
 from irsim.common.pages import bundle, one_page
+from irsim.graphics.scene.theme import css_variables
 
 __all__ = ["page"]
 
@@ -21,4 +22,5 @@ def page(data: bytes | None = None, *, title: str = "irsim replay") -> str:
         title: Title of the window.
     """
     content = "" if data is None else base64.b64encode(data).decode()
-    return one_page(_SOURCES, bundle(_SOURCES), "img-src data:", title=html.escape(title), data=content)
+    texts = {"title": html.escape(title), "data": content}
+    return one_page(_SOURCES, bundle(_SOURCES), "img-src data:", variables=css_variables(), **texts)

@@ -2,7 +2,7 @@
 
 import { inMetres, toPixels, toWorld } from "./camera.js";
 import { cellImage } from "./cells.js";
-import { opposite, rgbOf, seen } from "./colors.js";
+import { rgbOf, shade } from "./colors.js";
 import { drawContacts } from "./contacts.js";
 import { makeLayer, showLayer, showTrails } from "./layer.js";
 import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, hasLeft, isAbsent, isMover, poseAt, rowOfTime, waits } from "./run.js";
@@ -56,7 +56,7 @@ function drawGround(context, drawing, run, camera, colors, ratio) {
   context.fillRect(left, bottom, right - left, top - bottom);
   drawGrid(context, run.head.world, camera, colors);
   if (run.cells) {
-    const { left: x, right: to, bottom: low, top: high } = run.cells, tone = colors.wall;
+    const { left: x, right: to, bottom: low, top: high } = run.cells, tone = colors.rock;
     if (drawing.image?.tone !== tone) drawing.image = { tone, canvas: cellImage(run.cells, rgbOf(tone)) };
     context.imageSmoothingEnabled = camera.scale * ratio * run.cells.dx < 1.5;
     context.save();
@@ -71,7 +71,7 @@ function drawGround(context, drawing, run, camera, colors, ratio) {
   context.strokeRect(left, bottom, right - left, top - bottom);
   for (const object of run.objects) {
     if (!isMover(object) && object.shape >= 0 && !object.from) {
-      paintShape(context, run, object, poseAt(run, object.index, 0), camera, ratio, seen(colors, object.color), 1);
+      paintShape(context, run, object, poseAt(run, object.index, 0), camera, ratio, shade(colors, object, "fill"), 1, object.shape >= 0 && run.head.shapes[object.shape].line ? colors.wall : shade(colors, object, "edge"), 1.2);
     }
   }
 }
@@ -79,11 +79,11 @@ function drawGround(context, drawing, run, camera, colors, ratio) {
 /** Lines and areas that are watched: areas pale with a dashed edge. */
 function drawZones(context, { zones }, camera, colors) {
   const px = 1 / camera.scale;
-  for (const { path, line, color } of zones) {
-    context.fillStyle = context.strokeStyle = seen(colors, color);
+  for (const { path, line, colors: own } of zones) {
+    context.fillStyle = context.strokeStyle = own[colors.theme];
     context.lineWidth = (line ? 2.5 : 1) * px;
     if (!line) {
-      context.globalAlpha = 0.13;
+      context.globalAlpha = 0.09;
       context.fill(path, "evenodd");
       context.setLineDash([5 * px, 4 * px]);
     }
@@ -149,7 +149,7 @@ function drawTrails(context, run, at, camera, colors, ratio, from, to, width) {
     if (object.track < 0 || object.first >= to || hasLeft(run, object, at)) continue;
     context.beginPath();
     points += trace(context, run, object.track, Math.max(object.first, from), to, DENSE / camera.scale);
-    context.strokeStyle = seen(colors, object.color);
+    context.strokeStyle = shade(colors, object, "edge");
     context.stroke();
   }
   return points;
@@ -176,7 +176,7 @@ function trace(context, run, track, from, to, dense, most = Infinity) {
 function drawWay(context, drawing, run, shown, camera, colors, ratio, key, most) {
   const object = run.objects[shown.robot], row = Math.floor(shown.at);
   if (object.track < 0 || !shown.trails || isAbsent(run, object, shown.at)) return true;
-  const color = seen(colors, object.color), { way } = drawing;
+  const color = shade(colors, object, "edge"), { way } = drawing;
   const whole = showTrails(way, context, camera, ratio, `${key} ${shown.robot}`, row, 1, 1, most, (target, own, from, to) => {
     inMetres(target, own, ratio);
     beginWay(target, color, 2.6 / own.scale);
@@ -211,7 +211,7 @@ function drawGoals(context, run, shown, camera, colors, ratio) {
     if (!object.goal || object.shape < 0 || isAbsent(run, object, shown.at)) continue;
     const goal = goalAt(run, object.index, shown.at);
     if (!goal) continue;
-    const chosen = object.index === shown.robot, color = seen(colors, object.color), px = 1 / camera.scale;
+    const chosen = object.index === shown.robot, color = shade(colors, object, "edge"), px = 1 / camera.scale;
     place(context, camera, ratio, goal);
     context.globalAlpha = chosen ? 0.25 : 0.1;
     context.fillStyle = color;
@@ -254,7 +254,7 @@ function drawScans(context, drawing, run, shown, camera, colors, ratio) {
   const px = 1 / camera.scale;
   for (const { x, y, ends, hit } of drawing.scan.all) {
     const beams = hit.length, dot = Math.min(2.2 * px, 0.06 + px);
-    context.fillStyle = context.strokeStyle = colors.lidar;
+    context.fillStyle = context.strokeStyle = shade(colors, run.objects[shown.robot], "edge");
     context.beginPath();
     for (let i = 0; i < beams; i++) {
       context.moveTo(x, y);
@@ -275,7 +275,7 @@ function drawScans(context, drawing, run, shown, camera, colors, ratio) {
 function drawBody(context, run, object, at, shown, camera, colors, ratio) {
   if (object.shape < 0 || isAbsent(run, object, at)) return;
   const pose = poseAt(run, object.index, at), flags = flagsAt(run, object.index, at), px = 1 / camera.scale;
-  const color = seen(colors, object.color), hit = flags & COLLIDED, rests = (flags & ARRIVED || waits(run, object, at)) && !hit;
+  const color = shade(colors, object, "fill"), hit = flags & COLLIDED, rests = (flags & ARRIVED || waits(run, object, at)) && !hit;
   const chosen = object.index === shown.robot;
   if (chosen) {
     inMetres(context, camera, ratio);
@@ -310,7 +310,7 @@ function drawBody(context, run, object, at, shown, camera, colors, ratio) {
   context.lineTo(-0.55 * size, -0.6 * size);
   context.closePath();
   context.globalAlpha = 0.9;
-  context.fillStyle = opposite(color);
+  context.fillStyle = shade(colors, object, "dart");
   context.fill();
   context.globalAlpha = 1;
 }
@@ -323,9 +323,9 @@ function drawNames(context, run, at, camera, colors, ratio) {
   context.lineJoin = "round";
   context.strokeStyle = colors.paper;
   context.fillStyle = colors.ink;
-  for (const { name, at: corner, color } of run.zones) {
+  for (const { name, at: corner, colors: own } of run.zones) {
     const [x, y] = toPixels(camera, ...corner);
-    context.fillStyle = seen(colors, color);
+    context.fillStyle = own[colors.theme];
     context.strokeText(name, x, y - 2);
     context.fillText(name, x, y - 2);
   }
