@@ -1408,6 +1408,28 @@ class Painter:
     ) -> None:
         """Paint a polygon and its outline; `join` is miter, round or bevel."""
 
+    def glow(
+        self,
+        pixels: NDArray[np.uint8],
+        points: Floats,
+        x: float,
+        y: float,
+        reach: float,
+        fill: tuple[float, float, float, float],
+    ) -> None:
+        """Paint a polygon that is bright at (x, y), paler with the distance, and ends softly at `reach` [m]."""
+
+    def discs(
+        self,
+        pixels: NDArray[np.uint8],
+        points: Floats,
+        radius: float,
+        fill: tuple[float, float, float, float],
+        edge: tuple[float, float, float, float],
+        width: float,
+    ) -> None:
+        """Paint discs of one radius around `points` (N, 2), with outlines `width` pixels wide."""
+
     def line(
         self,
         pixels: NDArray[np.uint8],

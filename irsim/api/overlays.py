@@ -91,9 +91,14 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
     from irsim.rendering.planned_paths import draw_plans
     from irsim.rendering.snapshot import draw_between_steps
 
+    modern = env.scenario.world.plot.style == "modern"  # draws zones and contacts itself
+
     def add(scene: Scene) -> None:
         if overlays and "clearance" in overlays:
             draw_clearance(scene, env.simulation, path=footprint_of(env, ways))
+        if modern:
+            draw_plans(scene, ways)
+            return
         if overlays is None or "zones" in overlays:
             draw_zones(env.scenario.world.zones, Palette().zone, scene.extent).add_to(scene)
         draw_plans(scene, ways)

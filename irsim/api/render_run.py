@@ -6,8 +6,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from irsim.api.film_strip import moments_of
+from irsim.api.look import look_options, with_look
 from irsim.api.overlays import overlays_from
-from irsim.api.render_scenario import show_part, write_picture, write_sheet
+from irsim.api.render_scenario import show_part, usual_size, write_picture, write_sheet
 from irsim.api.take_snapshot import snapshot_of_env
 from irsim.common.files import check_suffix
 from irsim.env import Env
@@ -31,6 +32,9 @@ def render_run(
     region: Sequence[float] | None = None,
     strip: int | None = None,
     overlays: Iterable[str] | None = None,
+    style: str | None = None,
+    theme: str | None = None,
+    printed: bool = False,
     limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> RenderResult:
@@ -46,6 +50,9 @@ def render_run(
         region: Part to show.
         strip: Number of moments.
         overlays: Things to show besides bodies.
+        style: Style, like the next two.
+        theme: Colours.
+        printed: Whether it is for print.
         limits: Limits of the loader.
         progress: Callback ``(steps_done, steps_total)``.
 
@@ -60,10 +67,12 @@ def render_run(
     if strip is not None or shown is not None:
         check_suffix(target, ["png"])
     moments = None if strip is None else moments_of(last, strip)
-    env = Env(scenario_of(opened, limits), seed=int(opened.meta["seed"]), display=False, log_level="ERROR")
+    scenario = with_look(scenario_of(opened, limits), style, theme)
+    env = Env(scenario, seed=int(opened.meta["seed"]), display=False, log_level="ERROR")
     move, table = follow_record(opened, env), scene_table(env.scenario, env.seed, None)
     given = ["--steps", str(last), *([] if size is None else ["--size", str(size)]), *region_options(region)]
     given += [] if strip is None else ["--strip", str(strip)]
+    given += look_options(style, theme, printed)
     reproduce = " ".join(["irsim render", opened.id, *given, "-o", str(out)])
     if moments is not None or shown is not None:
         if moments is None:
@@ -71,7 +80,8 @@ def render_run(
         sheet = snapshot_of_env(
             env,
             opened.meta.get("scenario"),
-            size=600 if size is None else size,
+            size=usual_size(size, printed),
+            printed=printed,
             overlays=shown,
             region=region,
             moments=moments,
@@ -83,7 +93,7 @@ def render_run(
         )
         env.end(ending_time=0.0)
         return write_sheet(sheet, target, table)
-    show_part(env, size, region)
+    show_part(env, size, region, printed)
     return write_picture(
         env,
         target,

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.api.look import look_options, with_look
 from irsim.api.read_input import opened_policy, read_scenario
 from irsim.api.take_snapshot import ended_before, extent_of, moved_view, snapshot_of
 from irsim.common.arguments import check_whole_number
@@ -33,7 +34,10 @@ if TYPE_CHECKING:
     from irsim.policies.catalog import PolicySource
     from irsim.results.picture import SceneTable
 
-__all__ = ["animate", "render", "show_part", "write_picture", "write_sheet"]
+__all__ = ["animate", "render", "show_part", "usual_size", "write_picture", "write_sheet"]
+
+_SIZE_PX, _PRINT_PX = 600, 944
+"""Longer sides of pictures that are labelled like snapshots, on screens and for print [px]."""
 
 
 @answers_misspelt
@@ -48,6 +52,9 @@ def render(
     region: Sequence[float] | None = None,
     strip: int | None = None,
     overlays: Iterable[str] | None = None,
+    style: str | None = None,
+    theme: str | None = None,
+    printed: bool = False,
     strict: bool = False,
     imports: Sequence[str] = (),
     limits: Limits | None = None,
@@ -67,6 +74,9 @@ def render(
             (default: of a whole episode).
         overlays: Names of the things to show besides bodies, in a picture (png) labelled like snapshots: see
             :data:`irsim.api.overlays.OVERLAYS`.
+        style: ``modern`` or ``classic``; default: the scenario's, else :data:`irsim.api.look.DEFAULT_STYLE`.
+        theme: ``light`` or ``dark``, of the style `modern`; default: the scenario's.
+        printed: Draw for print: 8 cm wide at 300 dpi, unless ``size`` says otherwise, in the style `modern`.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first.
         limits: Limits of the loader.
@@ -101,8 +111,11 @@ def render(
             steps=steps or 0 if strip is None else steps,
             strip=strip,
             overlays=overlays,
-            size=600 if size is None else size,
+            size=usual_size(size, printed),
             region=region,
+            style=style,
+            theme=theme,
+            printed=printed,
             strict=strict,
             limits=limits,
             progress=progress,
@@ -112,10 +125,12 @@ def render(
             driven=driven,
         )
         return write_sheet(sheet, target, scene_table(scenario, sheet.seed, driven if driver is not None else None))
+    scenario = with_look(scenario, style, theme)
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR", policy=driver)
-    show_part(env, size, region)
+    show_part(env, size, region, printed)
     horizon, _ = horizon_of(env.simulation, steps if animated else steps or 0, limits or DEFAULT_LIMITS)
     sized = [*([] if size is None else ["--size", str(size)]), *region_options(region)]
+    sized += look_options(style, theme, printed)
     sized += [] if driven is None else ["--policy", driven]
     repeated = seed_to_repeat(scenario, env.seed, random_parts(scenario))
     return write_picture(
@@ -131,8 +146,18 @@ def render(
     )
 
 
-def show_part(env: Env, size: int | None, region: Sequence[float] | None) -> None:
-    """Set the size of a picture [px] and the part that it shows; None keeps what the scenario says."""
+def usual_size(size: int | None, printed: bool) -> int:
+    """Longer side of a picture that is labelled like snapshots [px]."""
+    return size or (_PRINT_PX if printed else _SIZE_PX)
+
+
+def show_part(env: Env, size: int | None, region: Sequence[float] | None, printed: bool = False) -> None:
+    """Set the size of a picture [px], the part that it shows, and whether it is for print.
+
+    Where size or region are None, the scenario says them.
+    """
+    if printed:
+        env._env_plot.set_style("modern", None, printed=True)
     if region is not None:
         env._env_plot.set_region(region)
     if size is not None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from irsim.api.film_strip import draw_strip, moments_of
+from irsim.api.look import look_options, with_look
 from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, plot_keys, requested_plans
 from irsim.api.read_input import read_scenario
 from irsim.env import Env
@@ -58,6 +59,8 @@ def snapshot(
     overlays: Iterable[str] | None = None,
     region: Sequence[float] | None = None,
     draw: bool = True,
+    style: str | None = None,
+    theme: str | None = None,
     strict: bool = False,
     limits: Limits | None = None,
     progress: Progress | None = None,
@@ -75,6 +78,8 @@ def snapshot(
             and the sensors that the scenario shows.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         draw: Whether to draw the picture, too.
+        style: ``modern`` or ``classic``; default: the scenario's, else :data:`irsim.api.look.DEFAULT_STYLE`.
+        theme: ``light`` or ``dark``; default: the scenario's.
         strict: Refuse what IR-SIM would ignore.
         limits: Limits of the loader and of the run.
         progress: Callback ``(steps_done, steps_total)``.
@@ -97,6 +102,8 @@ def snapshot(
         overlays=overlays,
         region=region,
         draw=draw,
+        style=style,
+        theme=theme,
         strict=strict,
         limits=limits,
         progress=progress,
@@ -115,6 +122,9 @@ def snapshot_of(
     overlays: Iterable[str] | None = None,
     region: Sequence[float] | None = None,
     draw: bool = True,
+    style: str | None = None,
+    theme: str | None = None,
+    printed: bool = False,
     strict: bool = False,
     limits: Limits | None = None,
     progress: Progress | None = None,
@@ -136,6 +146,7 @@ def snapshot_of(
         from irsim.graphics.scene.scene import region_extent
 
         region_extent(region)  # reports an invalid region before the simulation
+    scenario = with_look(scenario, style, theme)
     shown = None if overlays is None else overlays_from(overlays)
     chosen_seed = seed_of(scenario, seed)
     env, _ = first_with_room(
@@ -159,9 +170,12 @@ def snapshot_of(
     if count:
         warnings = [*warnings, *unopened_findings(scenario, "a picture")]
     options = [*region_options(region), *strip_options(strip), *overlay_options(shown)]
+    options += look_options(style, theme, printed)
     extra = ["--size", str(size), *options, *([] if driven is None else ["--policy", driven]), "-o", str(out)]
     repeated = seed_to_repeat(scenario, env.seed, random_parts(scenario))
-    other = None if base is None else Env(base, seed=env.seed, headless=True, log_level="ERROR")
+    other = (
+        None if base is None else Env(with_look(base, style, theme), seed=env.seed, headless=True, log_level="ERROR")
+    )
     result = snapshot_of_env(
         env,
         path,
@@ -170,6 +184,7 @@ def snapshot_of(
         region=region,
         moments=chosen,
         draw=draw,
+        printed=printed,
         warnings=warnings,
         reproduce=reproduce_command("render", path, repeated, count, strict, imports, extra=extra),
         progress=progress,
@@ -191,6 +206,7 @@ def snapshot_of_env(
     region: Sequence[float] | None = None,
     moments: Sequence[int] | None = None,
     draw: bool,
+    printed: bool = False,
     warnings: list[Finding],
     reproduce: str,
     progress: Progress | None = None,
@@ -208,6 +224,7 @@ def snapshot_of_env(
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         moments: Steps of a strip, the first of which is the present one; the environment is advanced to the last.
         draw: Whether to draw the picture, too.
+        printed: Whether it has the layout for print, in the style `modern`.
         warnings: Warnings about the scenario, for the result.
         reproduce: Command that draws the same picture, for the result.
         progress: Callback ``(steps_done, steps_total)``.
@@ -216,7 +233,7 @@ def snapshot_of_env(
         changed: Names of the objects that differ from it.
     """
     scenario = env.scenario
-    png = b""
+    png, notes = b"", list[str]()
     if moments is not None and draw:
         png = draw_strip(env, moments, size=size, overlays=overlays, region=region, progress=progress, move=move)
     elif moments is not None and move is not None:
@@ -230,6 +247,7 @@ def snapshot_of_env(
         before = None if base is None else base.simulation
         more, plot = additions(env, overlays, ways), plot_keys(overlays)
         shown: dict[str, Any] = {"extra": more, "overrides": plot, "before": before, "changed": changed}
+        shown |= {"printed": printed, "notes": notes}
         png = render_scene(env.simulation, size_px=size, region=region, **shown)
     x, y, right, top = scenario.world.bounds
     counts = counts_of(scenario)
@@ -253,6 +271,7 @@ def snapshot_of_env(
         ],
         moments=list(moments or ()),
         plans=plan_results(env, ways),
+        left_out=notes,
         size=_size_of(png) if png else (0, 0),
         warnings=warnings,
         reproduce=reproduce,

@@ -62,6 +62,11 @@ def render(
         str | None,
         typer.Option(metavar="NAME,NAME", help=f"Draw only these besides the bodies (png): {', '.join(OVERLAYS)}."),
     ] = None,
+    style: Annotated[
+        str | None, typer.Option(metavar="STYLE", help="Style: modern, or classic as in IR-SIM 2.12.")
+    ] = None,
+    theme: Annotated[str | None, typer.Option(metavar="THEME", help="Colours: light or dark (modern).")] = None,
+    printed: Annotated[bool, typer.Option("--print", help="For print: 8 cm wide, 300 dpi, on white (modern).")] = False,
     json_output: Json = False,
     strict: Strict = False,
     imports: Imports = None,
@@ -79,6 +84,7 @@ def render(
         check_suffix(out, [*PICTURE_FORMATS, *MOVING_SUFFIXES])
         shown_as: dict[str, Any] = {
             "steps": steps, "size": size, "region": region, "strip": strip, "progress": report,
+            "style": style, "theme": theme, "printed": printed,
             "overlays": None if overlays is None else overlays.split(","), "limits": limits_for(max_objects),
         }  # fmt: skip
         if is_run(file):

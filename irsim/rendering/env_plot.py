@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,26 +15,26 @@ from PIL import Image
 from irsim.diagnostics.diagnostic import nearest
 from irsim.graphics.encoding.pixels import to_image
 from irsim.graphics.figure import window
-from irsim.graphics.figure.figure import SceneFigure, fitting_size, inches
-from irsim.graphics.figure.overlay import Overlay
-from irsim.graphics.figure.pictures import Pictures
+from irsim.graphics.figure.figure import SceneFigure, inches
 from irsim.graphics.figure.pyplot_entry import PyplotEntry, activate, active
 from irsim.graphics.figure.window import LiveCanvas, LiveFigure
-from irsim.graphics.scene.scene import Scene, region_extent
+from irsim.graphics.scene.scene import Scene
 from irsim.graphics.scene.style import STYLE_KEYS, Palette
 from irsim.objects.drawing.scene_builder import MODES, SceneBuilder
 from irsim.objects.sensors.user_drawings import UserDrawings
 from irsim.objects.views import views
+from irsim.rendering.plot_format import PlotFormat
 from irsim.rendering.recording import Pictured
-from irsim.rendering.saving import Saving, saved_figure_options
+from irsim.rendering.saving import Saving
 
 if TYPE_CHECKING:
     from irsim.graphics.figure.window import Window
+    from irsim.rendering.modern.live import LiveStyle
 
 __all__ = ["EnvPlot"]
 
 
-class EnvPlot:
+class EnvPlot(PlotFormat):
     """Draws one environment.
 
     A picture always shows the state at the moment it is made; ``update`` only notes how to draw it. Artists are brought
@@ -63,32 +63,21 @@ class EnvPlot:
         palette: Palette | None = None,
         attach: Callable[[Axes], None] | None = None,
     ) -> None:
-        self.env = env
-        self.palette = palette or Palette()
+        super().__init__(env, palette)
         self._display, self._full, self._attach = display, full, attach
-        source = env.simulation.scenario.source
-        self._pictures = Pictures(Path(source).parent if source else None, env.logger.warning)
-        self._options = env.simulation.scenario.world.plot
-        saved = saved_figure_options(self._options)
-        self.saved_figure_kwargs: dict[str, Any] = {"dpi": 100, "bbox_inches": "tight", **saved}
-        self._dpi = float(self.saved_figure_kwargs["dpi"])
-        width, height = self._options.figure_pixels
-        self._size = float(width), float(height)
-        self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._has_picture)
-        self._overlay = Overlay(self.palette)
+        self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._pictures.has)
         self._user_sensors = UserDrawings()
-        self._figure: SceneFigure | None = None
         self._window: Window | None = None
         self._saving = Saving(self, self.saved_figure_kwargs.pop("format", None))
         self._unknown: set[str] = set()
         self._hidden: set[int] = set()
-        self._region: tuple[float, float, float, float] | None = None
         self._entry: PyplotEntry | None = None
         self._frame = 0
         self._looking = False
         self._shown_at: tuple[Any, ...] | None = None
         self._drawn_at: tuple[Any, ...] | None = None
         self._begin()
+        self.set_style(self._options.style or "classic")
 
     def _begin(self) -> None:
         self.title: str | None = self._options.title
@@ -113,34 +102,6 @@ class EnvPlot:
     def made(self) -> bool:
         """Whether the figure has been made."""
         return self._figure is not None
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height of the last saved picture, or of the figure before the first [px]."""
-        return self._saving.size or (int(self._size[0]), int(self._size[1]))
-
-    def set_size(self, longer_side: float) -> None:
-        """Set the longer side of pictures [px]; the other side follows from the world.
-
-        Raises:
-            ValueError: The size is not positive, or the figure has been made.
-        """
-        if not longer_side > 0:
-            raise ValueError(f"the size must be positive, not {longer_side}")
-        if self._figure is not None:
-            raise ValueError("the size can only be set before the first drawing")
-        world = self.env.simulation.scenario.world
-        x0, x1, y0, y1 = self._region or (0.0, world.width, 0.0, world.height)
-        self._size = fitting_size(x1 - x0, y1 - y0, longer_side, self._dpi, axis=not self._options.no_axis)
-        self.saved_figure_kwargs["bbox_inches"] = None
-
-    def set_region(self, region: Sequence[float]) -> None:
-        """Show only a part of the world: x_min, y_min, x_max, y_max [m]; call it before ``set_size``.
-
-        Raises:
-            ValueError: The region is not valid.
-        """
-        self._region = region_extent(region)
 
     def made_figure(self) -> SceneFigure:
         """Return the figure, which is made when it is first needed."""
@@ -216,34 +177,38 @@ class EnvPlot:
 
     def _show(self, figure: SceneFigure) -> None:
         with self.as_shown():
+            if self._modern is not None:
+                figure.show(self._modern_now(self._modern), None)
+                self._show_measurements(figure)
+                self._shown_at = self._moment()
+                return
             scene, tracks = self._builder.frame(
                 status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
             )
             left = [track for track in tracks if track.object not in self._hidden]
             figure.show(self._completed(scene), self._title(), left)
-            if self.env.simulation.measurements:
-                simulation = self.env.simulation
-                present = [view for view in views(simulation) if simulation.appeared[view.row] >= 0]
-                shown = [view for view in present if self._builder.style(view, {}).show_sensor]
-                self._user_sensors.show(figure.ax, shown)
+            self._show_measurements(figure)
         self._shown_at = self._moment()
 
-    def _has_picture(self, name: str) -> bool:
-        """Whether an image of that name is drawn in place of a body."""
-        return self._pictures.has(name)
+    def _show_measurements(self, figure: SceneFigure) -> None:
+        simulation = self.env.simulation
+        if simulation.measurements:
+            present = [view for view in views(simulation) if simulation.appeared[view.row] >= 0]
+            self._user_sensors.show(figure.ax, [view for view in present if self._builder.style(view, {}).show_sensor])
 
-    def _new_figure(self, figure: Figure | None) -> SceneFigure:
-        return SceneFigure(
-            self._size,
-            self._dpi,
-            axis=not self._options.no_axis,
-            tight=self._options.tight,
-            figure=figure,
-            pictures=self._pictures,
-        )
+    def _modern_now(self, modern: LiveStyle) -> Scene:
+        title = self.title if self.show_title else ""
+        return self._modern_scene(modern, self._overrides, self.viewpoint, self._hidden, title)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the last saved picture, or of the figure before the first [px]."""
+        return self._saving.size or (int(self._size[0]), int(self._size[1]))
 
     def scene(self) -> Scene:
         """Return what the picture shows, as data."""
+        if self._modern is not None:
+            return self._modern_now(self._modern)
         scene = self._builder.build(
             status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
         )
@@ -364,7 +329,8 @@ class EnvPlot:
         """Draw everything again without the drawings, titles and viewpoints of scripts; stored frames stay."""
         self._options = self.env.simulation.scenario.world.plot
         self._begin()
-        self._builder = SceneBuilder(self.env.simulation, palette=self.palette, has_picture=self._has_picture)
+        self._builder = SceneBuilder(self.env.simulation, palette=self.palette, has_picture=self._pictures.has)
+        self._renew_style()
         self._overlay.forget()
         self._user_sensors.forget()
         if self._figure is not None:

@@ -8,6 +8,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, Protocol
 
+import matplotlib
 from PIL import Image
 
 from irsim.common.files import replacing
@@ -17,7 +18,7 @@ from irsim.graphics.encoding.pixels import Pixels, from_image
 from irsim.graphics.encoding.png import png_bytes
 from irsim.graphics.figure.canvas import Box
 from irsim.graphics.figure.figure import SceneFigure
-from irsim.graphics.figure.layers import opaque_colors
+from irsim.graphics.figure.layers import hint_colors, opaque_colors
 from irsim.graphics.scene.scene import Scene
 from irsim.rendering.recording import Pictured, Recording
 
@@ -46,11 +47,19 @@ _QUICK_OPTIONS = frozenset({"dpi", "bbox_inches", "pad_inches"})
 """Options that the canvas itself can serve, without ``savefig``."""
 
 
+_VECTOR_OPTIONS: dict[Any, Any] = {"svg.fonttype": "none", "svg.hashsalt": "irsim", "pdf.fonttype": 42}
+"""In vector graphics text stays text, and the same picture is the same file."""
+
+
 class LivePlot(Protocol):
     """The part of a plot that saving uses."""
 
     env: Pictured
     saved_figure_kwargs: dict[str, Any]
+
+    @property
+    def tokens(self) -> list[str] | None:
+        """Colours of the theme of the style `modern`; None in other styles."""
 
     def made_figure(self) -> SceneFigure:
         """Return the figure, which is made when it is first needed."""
@@ -131,7 +140,7 @@ class Saving:
                 self.size = pixels.shape[1], pixels.shape[0]
             else:
                 plot.synced_figure()
-                with plot.as_shown():
+                with plot.as_shown(), matplotlib.rc_context(_VECTOR_OPTIONS if plot.tokens is not None else {}):
                     figure.figure.savefig(temporary, format=path.suffix[1:], **plot.saved_figure_kwargs)
         if save_gif and count != self.recording.last_count:
             self.add_frame({})
@@ -168,7 +177,8 @@ class Saving:
 
     def _colors(self) -> list[tuple[int, int, int]]:
         """Return the colours that a reduced palette must keep: opaque bodies, paper and ink."""
-        return opaque_colors(self._plot.scene())
+        tokens = self._plot.tokens
+        return opaque_colors(self._plot.scene()) if tokens is None else hint_colors(self._plot.scene(), tokens)
 
 
 def _cut(boxes: list[Box] | None, crop: Box) -> list[Box] | None:

@@ -22,6 +22,7 @@ from irsim.graphics.scene.style import Color, Palette
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.objects.views import views
 from irsim.rendering.compared import mark_changes
+from irsim.rendering.modern.still import draw_still
 from irsim.rendering.readability import make_legible
 from irsim.simulation.events import BETWEEN_STEPS, Event, passable_names
 
@@ -75,6 +76,8 @@ def render_scene(
     extra: Extra | None = None,
     before: Simulation | None = None,
     changed: Collection[str] = (),
+    printed: bool = False,
+    notes: list[str] | None = None,
 ) -> bytes:
     """Draw the present state of one world as a PNG with few colours (about 20 kB).
 
@@ -91,10 +94,28 @@ def render_scene(
         extra: Callback that adds marks or labels to the scene.
         before: Simulation of another scenario to compare with.
         changed: Names of the objects that differ from it, which are marked.
+        printed: Whether the picture has the layout for print, in the style `modern`.
+        notes: Takes what the picture leaves out, as sentences.
 
     Returns:
         The content of the PNG file.
     """
+    if simulation.scenario.world.plot.style == "modern":
+
+        def add(scene: Scene) -> None:
+            if extra is not None:
+                extra(scene)
+            if before is not None:
+                mark_changes(scene, simulation, before, changed)
+
+        pixels, colors, left_out = draw_still(
+            simulation, world, size_px=size_px, title=title, labels=labels, printed=printed, axes=True,
+            viewpoint=viewpoint, region=region, overrides=overrides or {}, extra=add,
+        )  # fmt: skip
+        if notes is not None:
+            notes += left_out
+        data = png_of(to_image(pixels), colors)
+        return _written(data, out)
     scene, pictures = legible_scene(
         simulation, world, labels=labels, viewpoint=viewpoint, region=region, overrides=overrides, extra=extra
     )
@@ -105,7 +126,10 @@ def render_scene(
     figure = SceneFigure(size, _DPI, pictures=pictures, halo=True)
     figure.show(scene, default_title(simulation, scene) if title is None else title)
     pixels, _ = figure.pixels(tight=False)
-    data = png_of(to_image(pixels), opaque_colors(scene))
+    return _written(png_of(to_image(pixels), opaque_colors(scene)), out)
+
+
+def _written(data: bytes, out: str | Path | None) -> bytes:
     if out is not None:
         with replacing(Path(out)) as temporary:
             temporary.write_bytes(data)

@@ -13,7 +13,12 @@ from irsim.graphics.figure.figure import SceneFigure
 from irsim.graphics.figure.layers import opaque_colors
 from irsim.graphics.scene.scene import Region, Scene
 from irsim.graphics.scene.style import Palette
+from irsim.graphics.scene.theme import Theme
 from irsim.objects.views import views
+from irsim.rendering.modern.frame import grid_step
+from irsim.rendering.modern.layout import fit
+from irsim.rendering.modern.still import StillPicture
+from irsim.rendering.modern.style import Request, name_of
 from irsim.rendering.readability import can_move
 from irsim.rendering.snapshot import Extra, legible_scene, png_of
 
@@ -25,6 +30,8 @@ __all__ = ["Strip", "tiling"]
 _GAP_PX = 6
 _LINE_HEIGHT_PX = 17
 _FONT_SIZE_PX = 13
+_HEAD_PX = 20
+"""Height of the line above all tiles, in the style `modern`."""
 MIN_DPI = 68.0
 MAX_DPI = 100.0
 _PX_PER_DPI = 4.0
@@ -63,9 +70,14 @@ class Strip:
         self._columns, self._tile = 1, (1, 1)
         self._title = ""
         self._first_contact: int | None = None
+        self._theme: Theme | None = None
+        self._word, self._step = "", 1.0
 
     def add(self, simulation: Simulation, extra: Extra | None = None) -> None:
         """Add a tile that shows the present moment."""
+        if simulation.scenario.world.plot.style == "modern":
+            self._add_modern(simulation, extra)
+            return
         scene, pictures = legible_scene(simulation, region=self._region, overrides=self._overrides, extra=extra)
         if not self._tiles:
             x0, x1, y0, y1 = scene.extent
@@ -84,8 +96,41 @@ class Strip:
         self._colors.update(dict.fromkeys(opaque_colors(scene)))
         self._tiles.append((f"{scene.time:.2f} s  step {int(simulation.count[0])}", to_image(pixels)))
 
+    def _add_modern(self, simulation: Simulation, extra: Extra | None) -> None:
+        picture = StillPicture(simulation, region=self._region, overrides=self._overrides, extra=extra)
+        x0, x1, y0, y1 = picture.world_shown
+        if not self._tiles:
+            side = self._size - _LINE_HEIGHT_PX
+            self._theme, self._title = picture.theme, name_of(simulation)
+            self._columns, self._tile = tiling(self._count, x1 - x0, y1 - y0, side)
+        layout = fit(picture.world_shown, max(self._tile), box=self._tile, strip=True)
+        request = Request(overrides=self._overrides or {}, said=self._word, names=not self._tiles)
+        pixels, colors = picture.draw(layout, request)
+        self._word = picture.word
+        self._colors.update(dict.fromkeys(colors))
+        self._tiles.append(("", to_image(pixels).convert("RGB")))
+        self._tile = layout.size
+        self._step = grid_step(layout)
+
+    def _modern_png(self, theme: Theme) -> bytes:
+        (width, height), columns = self._tile, self._columns
+        rows = math.ceil(len(self._tiles) / columns)
+        size = columns * (width + _GAP_PX) + _GAP_PX, _HEAD_PX + rows * (height + _GAP_PX)
+        sheet = Image.new("RGB", size, theme.page)
+        draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(_FONT_SIZE_PX)
+        draw.text((2 * _GAP_PX, _HEAD_PX - 6), self._title, fill=theme.ink, font=font, anchor="ls")
+        note = f"grid {self._step:g} m"
+        if draw.textlength(self._title + note, font=font) + 6 * _GAP_PX < sheet.width:
+            draw.text((sheet.width - 2 * _GAP_PX, _HEAD_PX - 6), note, fill=theme.muted, font=font, anchor="rs")
+        for number, (_, image) in enumerate(self._tiles):
+            left = _GAP_PX + number % columns * (width + _GAP_PX)
+            sheet.paste(image, (left, _HEAD_PX + number // columns * (height + _GAP_PX)))
+        return png_of(sheet, list(self._colors))
+
     def png(self) -> bytes:
         """Return the picture as a PNG file with few colours."""
+        if self._theme is not None:
+            return self._modern_png(self._theme)
         (width, height), columns = self._tile, self._columns
         rows = math.ceil(len(self._tiles) / columns)
         step_x, step_y = width + _GAP_PX, height + _LINE_HEIGHT_PX + _GAP_PX

@@ -145,6 +145,8 @@ class SnapshotResult(Result):
     """Steps in the picture, from left to right and top to bottom, if it shows several."""
     plans: list[RobotPlan] = []
     """Planned paths of the robots, if requested."""
+    left_out: list[str] = []
+    """What the picture leaves out because there is too much to show."""
     size: tuple[int, int]
     """Width and height [px]."""
     warnings: list[Finding]

@@ -149,6 +149,21 @@ void bind_pictures(nb::module_& m) {
           },
           nb::arg("pixels"), nb::arg("points"), nb::arg("fill"), nb::arg("edge"), nb::arg("width"), nb::arg("join"))
       .def(
+          "glow",
+          [](BoundPainter& self, const PixelArray& pixels, const PointArray& points, double x, double y, double reach,
+             const InkTuple& fill) {
+            self.painter.glow(self.own(pixels), points_of(points), points.shape(0), {x, y}, reach, ink_of(fill));
+          },
+          nb::arg("pixels"), nb::arg("points"), nb::arg("x"), nb::arg("y"), nb::arg("reach"), nb::arg("fill"))
+      .def(
+          "discs",
+          [](BoundPainter& self, const PixelArray& pixels, const PointArray& points, double radius,
+             const InkTuple& fill, const InkTuple& edge, double width) {
+            self.painter.discs(self.own(pixels), points_of(points), points.shape(0), radius, ink_of(fill), ink_of(edge),
+                               width);
+          },
+          nb::arg("pixels"), nb::arg("points"), nb::arg("radius"), nb::arg("fill"), nb::arg("edge"), nb::arg("width"))
+      .def(
           "line",
           [](BoundPainter& self, const PixelArray& pixels, const PointArray& points, const InkTuple& edge, double width,
              const std::string& join, bool round_caps) {

@@ -4,6 +4,8 @@ namespace irsim {
 namespace {
 
 constexpr float kFullMask = 255.0f;
+constexpr double kGlowFall = 0.62;  ///< Share of its opacity that a glow loses up to its reach.
+constexpr double kGlowRim = 0.1;    ///< Share of the reach over which its rest fades out at the end.
 
 /// The raster of this thread, whose memory serves all painters.
 Raster& raster_for(PixelBox clip) {
@@ -41,7 +43,7 @@ std::vector<Vec2> Painter::seen(const Vec2* points, std::size_t count) const {
 void Painter::circle(const Pixels& pixels, Vec2 center, double radius, Ink fill, Ink edge, double width) {
   Raster& raster = raster_for(clip_);
   const Vec2 middle = view_(center);
-  const double reach = radius * std::sqrt(std::fabs(view_.xx * view_.yy - view_.xy * view_.yx));
+  const double reach = radius * scale();
   if (fill.alpha > 0) {
     add_disc(raster, middle, reach);
     paint(raster, pixels, fill);
@@ -66,6 +68,28 @@ void Painter::polygon(const Pixels& pixels, const Vec2* points, std::size_t coun
     add_stroke(raster, corners, true, style);
     paint(raster, pixels, edge);
   }
+}
+
+void Painter::glow(const Pixels& pixels, const Vec2* points, std::size_t count, Vec2 origin, double reach, Ink fill) {
+  if (fill.alpha == 0 || !(reach > 0.0)) return;
+  Raster& raster = raster_for(clip_);
+  const std::vector<Vec2> corners = seen(points, count);
+  raster.outline(corners.data(), corners.size());
+  const PixelBox box = raster.touched();
+  const Vec2 middle = view_(origin);
+  const double opacity = fill.alpha, per_pixel = 1.0 / (reach * scale());
+  raster.sweep([&](int y, int x, float share) {
+    const double away = std::hypot(x + 0.5 - middle.x, y + 0.5 - middle.y) * per_pixel;
+    const double level = (1.0 - kGlowFall * away) * std::clamp((1.0 - away) / kGlowRim, 0.0, 1.0);
+    lay_over(pixels.row(y) + kChannels * x, fill, static_cast<int>(share * opacity * level + 0.5));
+  });
+  if (!is_empty(box)) boxes_.push_back(box);
+}
+
+void Painter::discs(const Pixels& pixels, const Vec2* centers, std::size_t count, double radius, Ink fill, Ink edge,
+                    double width) {
+  for (std::size_t i = 0; i < count; ++i) circle(pixels, centers[i], radius, fill, edge, width);
+  boxes_ = merged(boxes_);
 }
 
 void Painter::line(const Pixels& pixels, const Vec2* points, std::size_t count, Ink edge, const LineStyle& style) {

@@ -1,6 +1,7 @@
 // Paints the shapes of a scene into pixels, as Matplotlib would draw them with Agg.
 #pragma once
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,13 @@ class Painter {
 
   void circle(const Pixels& pixels, Vec2 center, double radius, Ink fill, Ink edge, double width);
   void polygon(const Pixels& pixels, const Vec2* points, std::size_t count, Ink fill, Ink edge, const LineStyle& style);
+
+  /// Paint a polygon that is bright at `origin`, paler with the distance, and ends softly at the distance `reach`.
+  void glow(const Pixels& pixels, const Vec2* points, std::size_t count, Vec2 origin, double reach, Ink fill);
+
+  /// Paint discs of one radius, with outlines `width` pixels wide.
+  void discs(const Pixels& pixels, const Vec2* centers, std::size_t count, double radius, Ink fill, Ink edge,
+             double width);
   void line(const Pixels& pixels, const Vec2* points, std::size_t count, Ink edge, const LineStyle& style);
 
   /// Paint straight lines from `origin` to the `ends`, one over the other.
@@ -43,6 +51,7 @@ class Painter {
 
  private:
   std::vector<Vec2> seen(const Vec2* points, std::size_t count) const;
+  double scale() const { return std::sqrt(std::fabs(view_.xx * view_.yy - view_.xy * view_.yx)); }
   void paint(Raster& raster, const Pixels& pixels, Ink ink);
 
   PixelBox clip_;

@@ -65,6 +65,9 @@ class EnvPlot3D(EnvPlot):
         **kwargs: Arguments of ``EnvPlot``.
     """
 
+    def set_style(self, style: str, theme: str | None = None, printed: bool = False) -> None:
+        """Keep the style of 3-D pictures, which is their only one."""
+
     def __init__(self, env: Any, *, depth: float, **kwargs: Any) -> None:
         self._depth = depth
         super().__init__(env, **kwargs)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -14,10 +15,10 @@ from numpy.typing import NDArray
 
 from irsim import _core as core
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Sector
+from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Sector, Spots, Stroke
 from irsim.graphics.scene.style import Color
 
-__all__ = ["Box", "Canvas", "geometry_path", "paint", "rgba"]
+__all__ = ["Box", "Canvas", "geometry_path", "paint", "rgba", "without_glow"]
 
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom of a part of a canvas [px], top row first."""
@@ -80,6 +81,8 @@ class Canvas:
 
 _UNIT_CIRCLE = Path.unit_circle()
 _TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
+_GLOW_RINGS = 12
+"""Number of polygons that stand for a glow in vector graphics."""
 
 
 def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
@@ -119,7 +122,11 @@ def paint(
         edge = _TRANSPARENT if stroke.color is None else rgba(stroke.color, mark.alpha)
         width = stroke.width * (per_metre if stroke.metric else per_point)
         face = _TRANSPARENT if fill is None else rgba(fill, mark.alpha)
-        if isinstance(shape, Circle):
+        if mark.glow is not None and isinstance(shape, Region):
+            painter.glow(pixels, shape.rings[0], *mark.glow, face)
+        elif isinstance(shape, Spots):
+            painter.discs(pixels, shape.points, shape.radius, face, edge, width)
+        elif isinstance(shape, Circle):
             painter.circle(pixels, shape.x, shape.y, shape.radius, face, edge, width)
         elif isinstance(shape, Region) and len(shape.rings) == 1:
             painter.polygon(pixels, shape.rings[0], face, edge, width, ends[1])
@@ -148,6 +155,9 @@ def geometry_path(geometry: Geometry) -> Path:
     """Return the outline of a mark as a Matplotlib path."""
     if isinstance(geometry, Circle):
         return _scale_and_move(_UNIT_CIRCLE, geometry)
+    if isinstance(geometry, Spots):
+        discs = [_scale_and_move(_UNIT_CIRCLE, Circle(x, y, geometry.radius)) for x, y in geometry.points.tolist()]
+        return Path.make_compound_path(*discs)
     if isinstance(geometry, Line):
         return Path(geometry.points)
     if isinstance(geometry, Sector):
@@ -155,6 +165,27 @@ def geometry_path(geometry: Geometry) -> Path:
     if len(geometry.rings) == 1:
         return _ring(geometry.rings[0])
     return Path.make_compound_path(*[_ring(ring) for ring in geometry.rings])
+
+
+def without_glow(mark: Mark) -> list[Mark]:
+    """Return marks of even opacity that stand for one with a glow; any other mark as it is."""
+    if mark.glow is None or not isinstance(mark.geometry, Region):
+        return [mark]
+    x, y, reach = mark.glow
+    away = mark.geometry.rings[0] - (x, y)
+    length = np.maximum(np.hypot(away[:, 0], away[:, 1]), 1e-12)[:, None]
+    marks = []
+    levels = [_glow_level((step - 0.5) / _GLOW_RINGS) for step in range(1, _GLOW_RINGS + 1)]
+    for step, (level, next_level) in enumerate(itertools.pairwise([*levels, 0.0]), 1):
+        ring = Region([np.array([x, y]) + away * np.minimum(1.0, reach * step / _GLOW_RINGS / length)])
+        alpha = mark.alpha * (level - next_level)
+        marks.append(Mark(mark.object, mark.part, ring, mark.fill, Stroke(None), alpha, mark.zorder))
+    return marks
+
+
+def _glow_level(away: float) -> float:
+    """Opacity of a glow at a share of its reach, as the painter draws it."""
+    return (1.0 - 0.62 * away) * min(1.0, (1.0 - away) / 0.1)
 
 
 def _ring(points: Floats) -> Path:

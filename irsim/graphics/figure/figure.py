@@ -14,6 +14,7 @@ from matplotlib.transforms import Affine2D, Bbox
 
 from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.figure.background import TrackLayer
+from irsim.graphics.figure.canvas import rgba
 from irsim.graphics.figure.compositor import Compositor
 from irsim.graphics.figure.glyphs import Glyphs, QuickText
 from irsim.graphics.figure.labels import LabelLayer, printable
@@ -21,6 +22,7 @@ from irsim.graphics.figure.layers import BeamLayer, FogLayer, GridLayer, MarkLay
 from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.figure.tracks import track_layers
 from irsim.graphics.scene.scene import GridImage, Picture, Scene
+from irsim.graphics.scene.style import Color
 from irsim.graphics.scene.tracks import Track
 
 __all__ = ["SceneFigure", "fitting_size", "inches"]
@@ -55,6 +57,7 @@ class SceneFigure:
         figure: Figure to use, such as a window's; default: a new one without a window.
         pictures: Images drawn in place of bodies.
         halo: Give labels a white outline, so that they can be read on dark ground, and move them away from bodies.
+        page: Colour of a figure without axes that the scene fills to its edges, with labels where the scene has them.
 
     Attributes:
         figure, ax: Matplotlib figure and axes, for drawing more.
@@ -70,14 +73,15 @@ class SceneFigure:
         figure: Figure | None = None,
         pictures: Pictures | None = None,
         halo: bool = False,
+        page: Color | None = None,
     ) -> None:
         if figure is None:
             figure = Figure(figsize=inches(size, dpi), dpi=dpi)
             FigureCanvasAgg(figure)
         self.figure = figure
-        self.axis, self.tight = axis, tight
+        self.axis, self.tight = axis and page is None, tight and page is None
         self._images = pictures or Pictures()
-        self._halo = halo
+        self._halo, self._page = halo, page
         self.ax: Axes = figure.add_subplot()
         self.compositor = Compositor(figure, self.ax)
         self._glyphs = Glyphs()
@@ -89,7 +93,7 @@ class SceneFigure:
         self._beams: dict[tuple[int, int], BeamLayer] = {}
         self._fog: FogLayer | None = None
         self._grids: dict[int, GridLayer] = {}
-        self._labels = LabelLayer(self.figure, self.ax, self._glyphs, halo=self._halo)
+        self._labels = LabelLayer(self.figure, self.ax, self._glyphs, halo=self._halo, placed=self._page is not None)
         self._pictures: dict[int, AxesImage] = {}
         self._extent: tuple[float, float, float, float] | None = None
         self._title: str | None = None
@@ -99,6 +103,10 @@ class SceneFigure:
         ax.set_ylabel("y [m]")
         if not self.axis:
             ax.set_axis_off()
+        if self._page is not None:
+            self.figure.patch.set_facecolor(rgba(self._page))
+            ax.set_position((0.0, 0.0, 1.0, 1.0))
+            ax.set_aspect("auto")
         self._title_artist = self._quick_title()
         self.compositor.forget()
         self._settled = False

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.figure.compositor import Compositor
 from irsim.graphics.figure.figure import inches
-from irsim.graphics.scene.scene import Beams, Circle, Label, Line, Mark, Region, Scene, Sector
+from irsim.graphics.scene.scene import Beams, Circle, Geometry, Label, Line, Mark, Region, Scene, Spots
 from irsim.graphics.scene.tracks import Track
 
 __all__ = ["SceneFigure3D"]
@@ -115,12 +115,14 @@ class SceneFigure3D:
         return self.compositor.pixels(box), box
 
 
-def outlines(geometry: Circle | Region | Line | Sector) -> list[NDArray[np.float64]]:
+def outlines(geometry: Geometry) -> list[NDArray[np.float64]]:
     """Return the (M, 2) points of each ring or line of a geometry."""
     if isinstance(geometry, Region):
         return list(geometry.rings)
     if isinstance(geometry, Line):
         return [geometry.points]
+    if isinstance(geometry, Spots):
+        return [ring for x, y in geometry.points.tolist() for ring in outlines(Circle(x, y, geometry.radius))]
     full = isinstance(geometry, Circle)
     first, last = (0.0, 2 * np.pi) if isinstance(geometry, Circle) else (geometry.start, geometry.end)
     angles = np.linspace(first, last, _CIRCLE_CORNERS, endpoint=not full)

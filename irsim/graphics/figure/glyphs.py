@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import RendererAgg
+from matplotlib.patheffects import PathEffectRenderer, Stroke
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
@@ -62,11 +63,15 @@ class QuickText(Text):
     Args:
         glyphs: Cache that the texts of a figure share.
         **kwargs: Arguments of :class:`matplotlib.text.Text`.
+
+    Attributes:
+        halo: Colour and width [pt] of an outline, or None.
     """
 
     def __init__(self, glyphs: Glyphs, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self._glyphs = glyphs
+        self.halo: tuple[Any, float] | None = None
 
     def draw(self, renderer: Any) -> None:
         """Draw the text.
@@ -76,7 +81,15 @@ class QuickText(Text):
         if not self.get_visible():
             return
         if not (self.axes and isinstance(renderer, RendererAgg) and self.paint_on(Canvas(self.axes, renderer))):
-            super().draw(renderer)
+            if self.halo is not None:
+                self.set_path_effects([self._outline()])
+                super().draw(renderer)
+                self.set_path_effects([])
+            super().draw(renderer)  # stays a text in vector graphics, as effects would make it a path
+
+    def _outline(self) -> Stroke:
+        assert self.halo is not None
+        return Stroke(linewidth=self.halo[1], foreground=self.halo[0], joinstyle="round")
 
     def paint_on(self, canvas: Canvas) -> bool:
         """Paint the text if it is plain; return whether that was done."""
@@ -108,11 +121,9 @@ class QuickText(Text):
 
     def _layout(self, renderer: Any) -> tuple[list[_Piece], float, float]:
         """Return the pieces, and the position of the first on the baseline [px]."""
-        look = (self.get_fontproperties(), self.get_color(), self.get_alpha(), renderer.dpi)
-        pieces = [
-            self._glyphs.get((text, *look), partial(self._render_piece, text, renderer))
-            for text in _PIECES.findall(self.get_text())
-        ]
+        look = (self.get_fontproperties(), self.get_color(), self.get_alpha(), renderer.dpi, self.halo)
+        texts = _PIECES.findall(self.get_text()) if self.halo is None else [self.get_text()]  # halos must not overlap
+        pieces = [self._glyphs.get((text, *look), partial(self._render_piece, text, renderer)) for text in texts]
         across, up = self.get_transform().transform(self.get_unitless_position())
         total = sum(piece.advance for piece in pieces)
         across -= {"left": 0.0, "center": total / 2, "right": total}[self.get_horizontalalignment()]
@@ -132,6 +143,9 @@ class QuickText(Text):
         context = paper.new_gc()
         context.set_foreground(self.get_color())
         context.set_alpha(self.get_alpha())
+        if self.halo is not None:
+            outlined = PathEffectRenderer([self._outline()], paper)
+            outlined.draw_text(context, _MARGIN, paper.height - below, piece, properties, 0)
         paper.draw_text(context, _MARGIN, paper.height - below, piece, properties, 0)
         context.restore()
         return _Piece(np.array(paper.buffer_rgba()), below, advance)

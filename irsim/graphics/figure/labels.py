@@ -44,15 +44,17 @@ class LabelLayer:
         glyphs: Drawn letters, which texts share.
         halo: Give labels a white outline, so that they can be read on dark ground, move them away from bodies, and
             connect a label that stands away from its thing with it.
+        placed: Labels have been placed already and stay where they are.
     """
 
-    def __init__(self, figure: Figure, ax: Axes, glyphs: Glyphs, *, halo: bool) -> None:
+    def __init__(self, figure: Figure, ax: Axes, glyphs: Glyphs, *, halo: bool, placed: bool = False) -> None:
+        self._placed = placed
         self.figure, self.ax = figure, ax
         self._glyphs, self._halo = glyphs, halo
         self._effects: list[AbstractPathEffect] = (
             [withStroke(linewidth=_HALO_WIDTH_PT, foreground="white")] if halo else []
         )
-        self._texts: dict[tuple[int, str], Text] = {}
+        self._texts: dict[tuple[int, str], QuickText] = {}
         self._leaders: LineCollection | None = None
         self._extents: dict[tuple[str, float, float], Bounds] = {}
 
@@ -61,7 +63,7 @@ class LabelLayer:
         labels = scene.labels
         if not labels and not self._texts:
             return
-        shown: dict[tuple[int, str], tuple[Label, Text]] = {}
+        shown: dict[tuple[int, str], tuple[Label, QuickText]] = {}
         view, data = self.ax.bbox, self.ax.transData
         anchors = data.transform([label.anchor for label in labels]) if labels else np.empty((0, 2))
         inside: NDArray[np.bool_] = (anchors >= (view.x0, view.y0)) & (anchors <= (view.x1, view.y1))
@@ -81,15 +83,18 @@ class LabelLayer:
             text.set_fontsize(label.size)
             text.set_alpha(label.alpha)
             text.set_zorder(label.zorder + _LABEL_ZORDER_STEP)
+            text.set_fontweight("bold" if label.bold else "normal")
+            text.set_fontstyle("italic" if label.italic else "normal")
+            text.halo = None if label.halo is None else (rgba(label.halo[0]), label.halo[1])
         for key, text in self._texts.items():
             if key not in shown:
                 text.set_visible(False)
-        if shown:
+        if shown and not self._placed:
             self._place(list(shown.values()), anchors[seen], scene)
         elif self._leaders is not None:
             self._leaders.set_segments([])
 
-    def _place(self, shown: list[tuple[Label, Text]], anchors: Floats, scene: Scene) -> None:
+    def _place(self, shown: list[tuple[Label, QuickText]], anchors: Floats, scene: Scene) -> None:
         """Shift labels that the edge of the axes would cut or that would cover another label.
 
         Goal labels give way to all others. With halo, a label that stands away from its thing gets a line to it.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,8 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from irsim.common.arrays import Floats
-from irsim.graphics.figure.canvas import Canvas, geometry_path, paint, rgba
+from irsim.components.maps._site import HALF
+from irsim.graphics.figure.canvas import Canvas, geometry_path, paint, rgba, without_glow
 from irsim.graphics.scene.scene import Beams, Dots, Fog, GridImage, Mark, Scene
 from irsim.graphics.scene.style import Color
 
@@ -26,6 +27,7 @@ __all__ = [
     "MarkArtist",
     "MarkLayer",
     "Spokes",
+    "hint_colors",
     "layer_key",
     "opaque_colors",
 ]
@@ -59,11 +61,20 @@ class GridLayer:
             return
         self._shown = grid
         self.version += 1
-        self.artist.set_data(255 - np.minimum(grid.levels, 100).T * np.float32(2.55))
+        if grid.color is None:
+            self.artist.set_data(255 - np.minimum(grid.levels, 100).T * np.float32(2.55))
+        else:
+            cells = np.zeros((*grid.levels.T.shape, 4))
+            cells[grid.levels.T > HALF] = rgba(grid.color)
+            self.artist.set_data(cells)
+            self.artist.set_interpolation("nearest")
         self.artist.set_extent(grid.extent)
 
 
-PARTS = ("field", "zone", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
+PARTS = (
+    *("paper", "grid", "field", "zone", "hatch", "trail", "trajectory", "plan", "bead", "fov", "scan", "hit", "goal"),
+    *("halo", "body", "beams", "arrow", "dart", "head", "ring", "contact", "badge", "sign", "frame", "foot"),
+)
 """Drawing order of the parts that have the same zorder."""
 
 ZORDER_STEP = 1e-3
@@ -168,7 +179,8 @@ class MarkLayer:
 
     def _fill(self) -> None:
         """Make paths, colours and lines of the collection."""
-        marks, scale, artist = list(self.artist.marks), self.artist.scale, self.artist
+        artist, scale = self.artist, self.artist.scale
+        marks = [plain for mark in artist.marks for plain in without_glow(mark)]
         same = _same_at_start(self._filled, marks)
         self._filled = marks
         self._paths[same:] = [geometry_path(mark.geometry) for mark in marks[same:]]
@@ -336,6 +348,20 @@ def opaque_colors(scene: Scene) -> list[tuple[int, int, int]]:
     colors += [rgba(label.color)[:3] for label in scene.labels if label.part in ("field", "plan")]
     levels = [(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), *dict.fromkeys(colors)]
     return [(round(r * 255), round(g * 255), round(b * 255)) for r, g, b in levels]
+
+
+def hint_colors(scene: Scene, tokens: Iterable[str]) -> list[tuple[int, int, int]]:
+    """Return the colours (0..255) that a reduced palette must keep of a picture that is drawn with a table of colours.
+
+    These are the colours of the table that the picture has, and the other opaque colours of its bodies and lines.
+    """
+    marks = [mark for mark in scene.marks if mark.alpha == 1]
+    used = [mark.fill for mark in marks] + [mark.stroke.color for mark in marks if mark.part != "trajectory"]
+    used += [label.color for label in scene.labels]
+    levels = dict.fromkeys(rgba(color)[:3] for color in used if color is not None)
+    first = [rgba(token)[:3] for token in tokens if rgba(token)[:3] in levels]
+    ordered = dict.fromkeys([*first, *levels])
+    return [(round(r * 255), round(g * 255), round(b * 255)) for r, g, b in ordered]
 
 
 def _shorten(values: list[Any]) -> list[Any]:

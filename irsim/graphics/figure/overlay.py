@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,9 @@ class Overlay:
 
     Each method draws until the next reset, or, with ``refresh``, for one frame only.
     """
+
+    zorder: float | None = None
+    """Layer of the drawings; None: Matplotlib's."""
 
     def __init__(self, palette: Palette) -> None:
         self.palette = palette
@@ -86,7 +89,10 @@ class Overlay:
             arrow = ax.quiver(rows[0], rows[1], rows[2], rows[3], color=color, **kwargs)
             self._keep([ax.scatter(rows[0], rows[1], color=color), arrow], refresh)
 
-    def _keep(self, artists: Iterable[Artist], refresh: bool) -> None:
+    def _keep(self, artists: Sequence[Artist], refresh: bool) -> None:
+        if self.zorder is not None:
+            for artist in artists:
+                artist.set_zorder(self.zorder)
         if refresh:
             self._waiting += artists
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from irsim.common import outline as outlines
 from irsim.common.outline import outline
-from irsim.graphics.scene.scene import Circle, Geometry, Line, Picture, Region, Sector
+from irsim.graphics.scene.scene import Circle, Geometry, Line, Picture, Region, Sector, Spots
 
 if TYPE_CHECKING:
     from irsim._core import State
@@ -151,9 +151,10 @@ def bounds(geometry: Geometry) -> tuple[float, float, float, float]:
     if isinstance(geometry, Circle | Sector):
         x, y, r = geometry.x, geometry.y, geometry.radius
         return x - r, y - r, x + r, y + r
-    points = geometry.points if isinstance(geometry, Line) else np.concatenate(geometry.rings)
+    points = geometry.points if isinstance(geometry, Line | Spots) else np.concatenate(geometry.rings)
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
-    return float(x0), float(y0), float(x1), float(y1)
+    reach = geometry.radius if isinstance(geometry, Spots) else 0.0
+    return float(x0 - reach), float(y0 - reach), float(x1 + reach), float(y1 + reach)
 
 
 def point_on(geometry: Geometry, view: tuple[float, float, float, float] | None = None) -> tuple[float, float] | None:
@@ -172,6 +173,8 @@ def point_on(geometry: Geometry, view: tuple[float, float, float, float] | None 
     shape: Any
     if isinstance(geometry, Circle | Sector):
         shape = shapely.Point(geometry.x, geometry.y).buffer(geometry.radius)
+    elif isinstance(geometry, Spots):
+        shape = shapely.MultiPoint(geometry.points).buffer(geometry.radius)
     elif isinstance(geometry, Line):
         shape = shapely.MultiLineString(list(zip(geometry.points[:-1], geometry.points[1:], strict=True)))
     else:

@@ -34,6 +34,7 @@ __all__ = [
     "Region",
     "Scene",
     "Sector",
+    "Spots",
     "Stroke",
     "region_extent",
 ]
@@ -77,7 +78,15 @@ class Sector:
     end: float
 
 
-Geometry = Circle | Region | Line | Sector
+@dataclass(slots=True, eq=False)
+class Spots:
+    """Discs of one radius around ``points`` (K, 2)."""
+
+    points: Floats
+    radius: float
+
+
+Geometry = Circle | Region | Line | Sector | Spots
 
 _REGION_VALUES = 4
 MAX_COORDINATE_M = 1e7
@@ -109,7 +118,8 @@ class Stroke:
 class Mark:
     """A shape that shows one part of an object.
 
-    ``part`` says which: body, goal, arrow, view sector, trajectory, trail snapshot, …
+    ``part`` says which: body, goal, arrow, view sector, trajectory, trail snapshot, … ``glow`` (x, y, reach) lets the
+    fill fade with the distance from a point, up to a reach.
     """
 
     object: int
@@ -119,11 +129,15 @@ class Mark:
     stroke: Stroke
     alpha: float
     zorder: float
+    glow: tuple[float, float, float] | None = None
 
 
 @dataclass(slots=True, eq=False)
 class Label:
-    """A text. Its baseline starts at ``x, y``; ``anchor`` is the position of the thing that it names."""
+    """A text. Its baseline starts at ``x, y``; ``anchor`` is the position of the thing that it names.
+
+    ``halo`` is the colour and the width in points of an outline, with which it can be read on any ground.
+    """
 
     object: int
     part: str
@@ -135,6 +149,9 @@ class Label:
     size: float
     alpha: float
     zorder: float
+    bold: bool = False
+    italic: bool = False
+    halo: tuple[Color, float] | None = None
 
 
 @dataclass(slots=True, eq=False)
@@ -200,12 +217,16 @@ class Picture:
 
 @dataclass(slots=True, eq=False)
 class GridImage:
-    """A map: ``levels`` (nx, ny) occupancy 0 to 100, i along +x, over ``extent`` (x from, x to, y from, y to)."""
+    """A map: ``levels`` (nx, ny) occupancy 0 to 100, i along +x, over ``extent`` (x from, x to, y from, y to).
+
+    With a ``color``, occupied cells have it and free cells are transparent; else levels are shades of grey.
+    """
 
     object: int
     levels: NDArray[np.uint8]
     extent: tuple[float, float, float, float]
     zorder: float
+    color: Color | None = None
 
 
 @dataclass(slots=True, eq=False)
@@ -279,7 +300,7 @@ def _plain(value: Any) -> Any:
         return value.tolist()
     if is_dataclass(value) and not isinstance(value, type):
         data = {entry.name: _plain(getattr(value, entry.name)) for entry in fields(value)}
-        if isinstance(value, Circle | Region | Line | Sector):
+        if isinstance(value, Geometry):
             data["kind"] = type(value).__name__.lower()
         return data
     if isinstance(value, list | tuple):

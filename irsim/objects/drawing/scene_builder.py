@@ -240,7 +240,7 @@ class SceneBuilder:
             style = replace(style, obj_alpha=pale * style.obj_alpha)
         if absent:
             style = replace(style, show_arrow=False, show_fov=False, show_goal=style.show_goal and view.role == "robot")
-        heading = self._heading(view, pose) if style.show_arrow else pose[2]
+        heading = self.heading_of(view, pose) if style.show_arrow else pose[2]
         body = self.body(view)
         key = (style, body, pose, str(goal), heading, view.drawing.text, view.drawing.goal_text, view.description)
         drawn = self._drawn.get(view.id)
@@ -275,7 +275,8 @@ class SceneBuilder:
             self._grids[view.id] = GridImage(view.id, levels, (x, x + nx * dx, y, y + ny * dy), _GRID_ZORDER)
         return self._grids[view.id]
 
-    def _heading(self, view: ObjectView, pose: Pose) -> float:
+    def heading_of(self, view: ObjectView, pose: Pose) -> float:
+        """Where an object is heading [rad]: its heading, or the direction of its motion if its drive never turns it."""
         if getattr(view.record.kinematics, "turns", True):
             return pose[2]
         vx, vy = self.simulation.twist[view.row, :2].tolist()
@@ -298,7 +299,7 @@ class SceneBuilder:
         """
         body, style = self.body(view), self.style(view, overrides)
         placed: Pose = tuple(self.simulation.pose[view.row].tolist()) if pose is None else pose
-        heading = self._heading(view, placed) if pose is None and style.show_arrow else placed[2]
+        heading = self.heading_of(view, placed) if pose is None and style.show_arrow else placed[2]
         shown = self.simulation.goal[view.row].tolist() if goal is None else list(goal)
         drawn = _draw(view, body, style, placed, heading, shown, (), self._has_picture)
         return drawn.marks, drawn.labels, drawn.picture

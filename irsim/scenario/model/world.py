@@ -78,6 +78,11 @@ class SavedFigure(Options):
 class WorldPlot(Options):
     """How the world is drawn."""
 
+    style: Literal["modern", "classic"] | None = None
+    """Style of pictures: `modern`, or `classic` as in IR-SIM 2.12; null is `classic` for `env.render()` of programs,
+    `modern` for commands and tools."""
+    theme: Literal["light", "dark"] = "light"
+    """Colours of the style `modern`."""
     figure_pixels: Annotated[list[Annotated[Number, Field(ge=1, le=20_000)]], vector(("px", "px"), 2)] = [1000, 800]
     """Size of the figure: [width, height]."""
     saved_figure: SavedFigure = SavedFigure()

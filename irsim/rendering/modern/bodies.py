@@ -1,0 +1,148 @@
+"""Bodies with their glyphs: a dart is a robot, head and shoulders are a person, pale with an edge is what stands."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from irsim.graphics.scene.bodies import Pose, place
+from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Stroke
+from irsim.graphics.scene.theme import Theme, mix
+from irsim.rendering.modern.frame import stroke
+from irsim.rendering.modern.layout import Layout
+from irsim.rendering.modern.things import Thing
+
+__all__ = ["STILL_Z", "dart", "moving_marks", "person_marks", "robot_marks", "still_marks"]
+
+STILL_Z = 1.2
+_WALL_Z, _PERSON_Z, _ROBOT_Z = 1.5, 4.0, 4.3
+_EDGE, _STILL_EDGE, _RIM = 1.4, 1.2, 1.0
+_HALO_ROUND, _HALO_OTHER = 1.2, 1.7
+_SMALL_PERSON = 8.0
+"""A person with a smaller radius is drawn with fewer parts [u]."""
+_ARRIVED_SHARE = 0.45
+_POINTS = 32
+_WHEEL = (0.22, 0.09)
+"""Length and width of a wheel, as shares of the length of the body."""
+MIN_WHEELED = 24.0
+"""Least length of a body with wheels [u]."""
+
+
+def still_marks(thing: Thing, theme: Theme) -> list[Mark]:
+    """A static body: pale, carried by its edge."""
+    body = thing.mark
+    if body is None or thing.view.shape == "walls":  # the edge of the world stands for these
+        return []
+    plot = thing.view.record.plot
+    if isinstance(body.geometry, Line):
+        line = stroke(theme.wall, 2.0, plot.obj_linestyle)
+        return [Mark(thing.number, "body", body.geometry, None, line, body.alpha, _WALL_Z)]
+    edge = stroke(thing.shades.edge, _STILL_EDGE, plot.obj_linestyle)
+    return [Mark(thing.number, "body", body.geometry, thing.shades.fill, edge, body.alpha, STILL_Z)]
+
+
+def moving_marks(thing: Thing, theme: Theme) -> list[Mark]:
+    """A moving obstacle that is no person: a disc or an outline, without a sign."""
+    body = thing.mark
+    if body is None:
+        return []
+    if isinstance(body.geometry, Line):
+        line = stroke(thing.shades.fill, 2.0)
+        return [Mark(thing.number, "body", body.geometry, None, line, body.alpha, _PERSON_Z)]
+    rim = stroke(theme.paper, _RIM)
+    return [Mark(thing.number, "body", body.geometry, thing.shades.fill, rim, body.alpha, _PERSON_Z)]
+
+
+def person_marks(thing: Thing, layout: Layout, theme: Theme) -> list[Mark]:
+    """Head and shoulders as seen from above; the head is in front."""
+    body, r = thing.mark, thing.radius
+    if body is None:
+        return []
+    number, fill, alpha = thing.number, thing.shades.fill, body.alpha
+    pose: Pose = (*thing.pose[:2], thing.course)
+    small = r * layout.scale < _SMALL_PERSON
+    marks = list[Mark]()
+    along, across, head, rims = (0.575, 1.05, 0.56, (0.5, 0.7)) if small else (0.525, 0.99, 0.50, (_RIM, _RIM))
+    if small:
+        fill = mix(fill, theme.person_head, 0.75)
+    else:
+        disc = Circle(*thing.pose[:2], r)
+        marks.append(Mark(number, "halo", disc, fill, Stroke(None), 0.13 * alpha, _PERSON_Z))
+        marks.append(Mark(number, "halo", disc, None, stroke(fill, _RIM), 0.45 * alpha, _PERSON_Z))
+    shoulders = place(_ellipse(-0.12 * r, along * r, across * r), pose)
+    middle = place(Circle(0.18 * r, 0.0, head * r), pose)
+    marks.append(Mark(number, "body", shoulders, fill, stroke(theme.paper, rims[0]), alpha, _PERSON_Z))
+    marks.append(Mark(number, "head", middle, theme.person_head, stroke(theme.paper, rims[1]), alpha, _PERSON_Z))
+    return marks
+
+
+def robot_marks(thing: Thing, layout: Layout, theme: Theme) -> list[Mark]:
+    """A robot with its true footprint, or a disc that is large enough to be seen, and a dart in it."""
+    body, number, shades = thing.mark, thing.number, thing.shades
+    arrived = thing.state == "arrived"
+    fill = mix(shades.fill, theme.paper, _ARRIVED_SHARE) if arrived else shades.fill
+    inner = shades.edge if arrived else shades.dart
+    turned: Pose = (*thing.pose[:2], thing.course)
+    if body is None:
+        return []
+    own, shape = thing.view.record.plot, body.geometry
+    disc = thing.is_round or thing.radius > thing.body.radius or isinstance(shape, Line)
+    if disc:
+        shape = Circle(*thing.pose[:2], thing.radius)
+    halo = 2 * (_HALO_ROUND if disc else _HALO_OTHER) + _EDGE
+    width = float(own.obj_linewidth) if "obj_linewidth" in own.model_fields_set else _EDGE
+    marks = [
+        Mark(number, "halo", shape, None, stroke(theme.paper, halo), body.alpha, _ROBOT_Z - 0.02),
+        Mark(number, "body", shape, fill, stroke(shades.edge, width, own.obj_linestyle), body.alpha, _ROBOT_Z),
+    ]
+    marks += [] if disc else _wheels(thing, layout, theme, body.alpha)
+    if thing.wants("show_arrow"):
+        sign = dart(thing.radius) if disc else dart(thing.half_width, thing.body.length / 2, thing.body.middle)
+        marks.append(Mark(number, "dart", place(sign, turned), inner, Stroke(None), body.alpha, _ROBOT_Z + 0.01))
+    return marks
+
+
+def dart(r: float, half_length: float | None = None, middle: tuple[float, float] = (0.0, 0.0)) -> Region:
+    """A kite along body x whose tip is in front.
+
+    Args:
+        r: Half the width of the body [m].
+        half_length: Half the length of a long body [m].
+        middle: Middle of the body [m].
+    """
+    tip = 0.86 * r if half_length is None else min(0.84 * half_length, 1.1 * r)
+    corners = np.array([(tip, 0.0), (-0.52 * r, 0.58 * r), (-0.24 * r, 0.0), (-0.52 * r, -0.58 * r)])
+    if half_length is not None and half_length < r:
+        corners *= half_length / r
+    return Region([corners + middle])
+
+
+def _wheels(thing: Thing, layout: Layout, theme: Theme, alpha: float) -> list[Mark]:
+    """The wheels of a car, of which the front ones are turned by its steering angle."""
+    record, body = thing.view.record, thing.body
+    drive = getattr(record.kinematics, "name", "")
+    if drive != "acker" or body.length * layout.scale < MIN_WHEELED or not record.wheelbase:
+        return []
+    state = thing.view.state[:, 0]
+    steering = float(state[3]) if len(state) > 3 else 0.0
+    long, wide = (share * body.length / 2 for share in _WHEEL)
+    wheel = Region([np.array([(-long, -wide), (long, -wide), (long, wide), (-long, wide)])])
+    marks = list[Mark]()
+    for x, angle in ((0.0, 0.0), (float(record.wheelbase), steering)):
+        for side in (-1, 1):
+            turned = place(wheel, (x, body.middle[1] + side * (body.width / 2 - wide), angle))
+            shape: Geometry = place(turned, thing.pose)
+            marks.append(Mark(thing.number, "arrow", shape, theme.ink, Stroke(None), alpha, _ROBOT_Z))
+    return marks
+
+
+def _ellipse(x: float, along: float, across: float) -> Region:
+    angles = np.linspace(0, 2 * math.pi, _POINTS, endpoint=False)
+    return Region([np.stack([x + along * np.cos(angles), across * np.sin(angles)], axis=1)])
+
+
+def kinds(things: Sequence[Thing], kind: str) -> list[Thing]:
+    """The objects of one kind."""
+    return [thing for thing in things if thing.kind == kind]

@@ -1,0 +1,189 @@
+"""Places for names and times: beside their thing, over nothing that must be seen, always found in the same way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
+from irsim.graphics.figure.measuring import TextSizes
+from irsim.graphics.scene.bodies import bounds
+from irsim.graphics.scene.scene import Label, Line, Mark
+from irsim.graphics.scene.theme import Theme
+from irsim.rendering.modern.frame import label, stroke
+from irsim.rendering.modern.layout import Layout
+
+__all__ = ["Wish", "place_names"]
+
+_NAME_Z, _LEADER_Z = 7.0, 6.5
+_GAPS = (4.0, 14.0, 26.0)
+"""Distances of a name from its thing [u]; the farther ones have a line to it."""
+_GAP_COST = (0.0, 0.3, 0.6)
+_WALL_COST, _PLAN_COST, _TRAIL_COST, _ORDER_COST = 0.15, 0.12, 0.06, 0.01
+_HALO, _LEADER = 2.6, 0.9
+_ASCENT, _DESCENT = 0.76, 0.22
+"""Height of a text above and below its line, as shares of its size."""
+_TAKEN = ("goal", "contact", "badge", "head", "ring")
+_MOVING_Z = 4.0
+"""Bodies from this layer on are robots, people and other things that move."""
+_SPREAD = 6.0
+"""Distance of the points of trails and plans that names avoid [u]."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A text that needs a place.
+
+    Attributes:
+        number, part: Object and part of the label.
+        text: The text.
+        color: Its colour.
+        at: Middle of the thing [m].
+        reach: Half the width and half the height of the thing [m].
+        leads: Whether a line may lead to a text that stands away.
+    """
+
+    number: int
+    part: str
+    text: str
+    color: str
+    at: tuple[float, float]
+    reach: tuple[float, float]
+    leads: bool = True
+
+
+def place_names(
+    wishes: Sequence[Wish],
+    marks: Sequence[Mark],
+    fixed: Sequence[Label],
+    layout: Layout,
+    theme: Theme,
+    sizes: TextSizes,
+) -> tuple[list[Mark], list[Label], int]:
+    """Find places for texts, the most important first.
+
+    Args:
+        wishes: The texts.
+        marks: What is drawn.
+        fixed: Texts that have their place.
+        layout: The layout.
+        theme: The colours.
+        sizes: Measures texts.
+
+    Returns:
+        Lines to texts that stand away, the labels, and the number of texts without a place.
+    """
+    if not wishes:
+        return [], [], 0
+    taken = [_box(mark, layout) for mark in marks if mark.part in _TAKEN or _is_moving(mark)]
+    taken += [_text_box(one, layout, sizes) for one in fixed]
+    walls = np.array([_box(m, layout) for m in marks if m.part == "body" and not _is_moving(m)]).reshape(-1, 4)
+    plans, trails = (_points(marks, part, layout) for part in ("plan", "trajectory"))
+    x0, x1, y0, y1 = layout.world
+    low, high = layout.places(np.array([(x0, y0), (x1, y1)]))
+    leaders, labels, dropped = list[Mark](), list[Label](), 0
+    size = layout.sizes.name
+    for wish in wishes:
+        width = sizes.width(wish.text, size, bold=True)
+        places = _places(wish, layout, width, size)
+        free = np.all((places[:, :2] >= low + 1) & (places[:, 2:] <= high - 1), axis=1)
+        free &= ~_overlaps(places, np.array(taken).reshape(-1, 4)).any(axis=1)
+        if not free.any():
+            dropped += 1
+            continue
+        cost = (
+            np.repeat(_GAP_COST, len(places) // len(_GAPS))
+            + _ORDER_COST * np.tile(np.arange(len(places) // len(_GAPS)), len(_GAPS))
+            + _WALL_COST * _overlaps(places, walls).any(axis=1)
+            + _PLAN_COST * _holds(places, plans)
+            + _TRAIL_COST * _holds(places, trails)
+        )
+        chosen = int(np.where(free, cost, np.inf).argmin())
+        box = places[chosen]
+        taken.append((float(box[0]), float(box[1]), float(box[2]), float(box[3])))
+        place = layout.at(float(box[0]), float(box[1]) + _DESCENT * size)
+        halo = (theme.paper, _HALO)
+        labels.append(
+            label(wish.number, wish.part, place, wish.text, wish.color, size, zorder=_NAME_Z, bold=True, halo=halo)
+        )
+        if wish.leads and chosen >= len(places) // len(_GAPS):
+            leaders.append(_leader(wish, box, layout))
+    return leaders, labels, dropped
+
+
+def _places(wish: Wish, layout: Layout, width: float, size: float) -> Floats:
+    """(3 * 8, 4) boxes around a thing, the nearest first: above, below, right, left, then the corners [u]."""
+    [(x, y)] = layout.places(np.array([wish.at])).tolist()
+    across, up = (length * layout.scale for length in wish.reach)
+    height = (_ASCENT + _DESCENT) * size
+    boxes = []
+    for gap in _GAPS:
+        over, under = y + up + gap, y - up - gap - height
+        right, left = x + across + gap, x - across - gap - width
+        middle, half = x - width / 2, y - height / 2
+        slant = 0.75
+        corners = [(middle, over), (middle, under), (right, half), (left, half)]
+        for side in (x + slant * across + gap * slant, x - slant * across - gap * slant - width):
+            corners += [(side, y + slant * (up + gap)), (side, y - slant * (up + gap) - height)]
+        boxes += [(a, b, a + width, b + height) for a, b in corners]
+    return np.array(boxes)
+
+
+def _leader(wish: Wish, box: Floats, layout: Layout) -> Mark:
+    """A thin line from a text to the rim of its thing."""
+    middle = layout.places(np.array([wish.at]))[0]
+    half = np.maximum(np.array(wish.reach) * layout.scale, 1e-6)
+    start = np.clip(middle, box[:2], box[2:])
+    way = (start - middle) / half
+    end = middle + half * way / max(1.0, float(np.hypot(*way)))
+    points = np.array([layout.at(*start.tolist()), layout.at(*end.tolist())])
+    return Mark(wish.number, "sign", Line(points), None, stroke(wish.color, _LEADER), 1.0, _LEADER_Z)
+
+
+def _is_moving(mark: Mark) -> bool:
+    return mark.part == "body" and mark.zorder >= _MOVING_Z
+
+
+def _box(mark: Mark, layout: Layout) -> tuple[float, float, float, float]:
+    left, bottom, right, top = bounds(mark.geometry)
+    (x0, y0), (x1, y1) = layout.places(np.array([(left, bottom), (right, top)])).tolist()
+    return x0, y0, x1, y1
+
+
+def _text_box(one: Label, layout: Layout, sizes: TextSizes) -> tuple[float, float, float, float]:
+    size = one.size * 96 / 72
+    [(x, y)] = layout.places(np.array([(one.x, one.y)])).tolist()
+    width = sizes.width(one.text, size, bold=one.bold, italic=one.italic)
+    return x, y - _DESCENT * size, x + width, y + _ASCENT * size
+
+
+def _points(marks: Sequence[Mark], part: str, layout: Layout) -> Floats:
+    """Points along lines, close enough together that a text cannot lie between two of them [u]."""
+    found = [np.empty((0, 2))]
+    for mark in marks:
+        if mark.part != part or not isinstance(mark.geometry, Line):
+            continue
+        points = layout.places(mark.geometry.points)
+        length = np.hypot(*np.diff(points, axis=0).T)
+        along = np.concatenate([[0.0], np.cumsum(length)])
+        if along[-1] > 0:
+            at = np.linspace(0.0, along[-1], 2 + int(along[-1] / _SPREAD))
+            found.append(np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1))
+    return np.concatenate(found)
+
+
+def _holds(boxes: Floats, points: Floats) -> Floats:
+    """(N,) whether a box contains one of the points."""
+    x, y = points[:, 0], points[:, 1]
+    inside = (x > boxes[:, :1]) & (x < boxes[:, 2:3]) & (y > boxes[:, 1:2]) & (y < boxes[:, 3:])
+    return np.asarray(inside.any(axis=1), dtype=np.float64)
+
+
+def _overlaps(some: Floats, others: Floats) -> NDArray[np.bool_]:
+    left, bottom, right, top = some.T[:, :, None]
+    a, b, c, d = others.T[:, None]
+    overlapping: NDArray[np.bool_] = (right > a) & (left < c) & (top > b) & (bottom < d)
+    return overlapping

@@ -1,0 +1,195 @@
+"""The objects of a picture, with what their glyphs depend on: kind, shades, state, and how many there are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from irsim.graphics.scene.bodies import Body
+from irsim.graphics.scene.scene import Mark, Scene
+from irsim.graphics.scene.theme import Kind, Shades, Theme
+from irsim.objects.drawing.kinds import kind_of
+from irsim.objects.views import views
+from irsim.options.colors import ACKER_COLOR, CYCLE, ROBOT_COLOR
+from irsim.simulation.events import Event, first_collisions
+
+if TYPE_CHECKING:
+    from irsim.objects.drawing.scene_builder import SceneBuilder
+    from irsim.objects.view import ObjectView
+    from irsim.rendering.modern.layout import Layout
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["FEW_ROBOTS", "MANY_ROBOTS", "Crowd", "Thing", "read_things"]
+
+FEW_ROBOTS = 12
+"""Up to so many robots everything is drawn."""
+MANY_ROBOTS = 50
+"""Of more robots only bodies and short trails are drawn."""
+MANY_PEOPLE = 50
+_DISTINCT = 6
+"""Number of colours that can be told apart by anybody."""
+_SMALLER = (1.0, 0.85, 0.62)
+"""Factor of the least radius of robots: of few, of some and of many."""
+_CROWDED_PERSON, _CROWDED_SMALL_PERSON = 4.2, 3.8
+"""Least radius of a person where there are many, in the normal layout and in others [u]."""
+State = Literal["", "arrived", "collided", "stopped"]
+
+
+@dataclass(slots=True)
+class Thing:
+    """One object.
+
+    Attributes:
+        mark: The mark of its body, with its true footprint; None for one that is drawn as an image or not at all.
+        pose: x, y [m], heading [rad].
+        course: Where it is going, which may differ from its heading [rad].
+        radius: Radius that its glyph has in the picture [m].
+        shown: Whether it is in the part of the world that the picture shows.
+        moves: Whether it can move.
+        hit: Its first collision.
+    """
+
+    view: ObjectView
+    kind: Kind
+    shades: Shades
+    body: Body
+    mark: Mark | None
+    pose: tuple[float, float, float]
+    course: float
+    radius: float
+    shown: bool
+    moves: bool
+    state: State
+    hit: Event | None
+    picked: bool
+    overrides: Mapping[str, Any]
+
+    @property
+    def number(self) -> int:
+        """Id of the object."""
+        return self.view.id
+
+    @property
+    def is_round(self) -> bool:
+        """Whether its body is a disc about its position."""
+        return self.body.kind == "circle" and self.body.middle == (0.0, 0.0)
+
+    @property
+    def half_width(self) -> float:
+        """Half the shorter side of its body [m]."""
+        return min(self.body.length, self.body.width) / 2
+
+    def wants(self, key: str, default: bool = True) -> bool:
+        """Whether a plot key, such as ``show_goal``, is on: the caller says so, else the scenario, else the style."""
+        if key in self.overrides and self.overrides[key] is not None:
+            return bool(self.overrides[key])
+        plot = self.view.record.plot
+        return bool(getattr(plot, key)) if key in plot.model_fields_set else default
+
+
+@dataclass(frozen=True)
+class Crowd:
+    """How many robots and people the picture shows."""
+
+    robots: int
+    people: int
+
+    @property
+    def level(self) -> int:
+        """0 for few robots, 1 for some, 2 for many."""
+        return (self.robots > FEW_ROBOTS) + (self.robots > MANY_ROBOTS)
+
+    def least_radius(self, kind: Kind, layout: Layout) -> float:
+        """Least radius of a robot or a person [m]."""
+        sizes = layout.sizes
+        if kind == "robot":
+            return layout.metres(sizes.robot * _SMALLER[self.level])
+        crowded = _CROWDED_PERSON if sizes.kind == "normal" else _CROWDED_SMALL_PERSON
+        return layout.metres(crowded if self.people > MANY_PEOPLE else sizes.person)
+
+
+def read_things(
+    scene: Scene,
+    simulation: Simulation,
+    world: int,
+    builder: SceneBuilder,
+    layout: Layout,
+    theme: Theme,
+    *,
+    events: Sequence[Event],
+    overrides: Mapping[str, Any],
+    picked: Collection[str] = (),
+) -> tuple[list[Thing], Crowd]:
+    """Read the objects that are in a scene.
+
+    Args:
+        scene: The scene, with the bodies of its objects.
+        simulation: The simulation.
+        world: Index of the world.
+        builder: What has made the scene.
+        layout: The layout of the picture.
+        theme: Its colours.
+        events: Events of the episode so far.
+        overrides: Plot keys that the caller sets.
+        picked: Names of the objects that stand out.
+    """
+    marks = {mark.object: mark for mark in scene.marks if mark.part == "body"}
+    images = {picture.object for picture in scene.pictures}
+    present = [view for view in views(simulation, world) if view.id in marks or view.id in images]
+    hits = first_collisions(simulation, list(events))
+    colors = _colors(present)
+    x0, x1, y0, y1 = layout.world
+    things = list[Thing]()
+    for view in present:
+        x, y, heading = simulation.pose[view.row].tolist()
+        if math.isnan(x) or simulation.appeared[view.row] < 0:
+            x, y, heading = simulation.state.initial_state(view.row)[:3].tolist()
+        kind, hit = kind_of(view.record), hits.get(view.name)
+        body = builder.body(view)
+        things.append(
+            Thing(
+                view=view,
+                kind=kind,
+                shades=theme.shades(kind, colors[view.id]),
+                body=body,
+                mark=marks.get(view.id),
+                pose=(x, y, heading),
+                course=builder.heading_of(view, (x, y, heading)),
+                radius=body.radius,
+                shown=x0 - body.radius <= x <= x1 + body.radius and y0 - body.radius <= y <= y1 + body.radius,
+                moves=not view.record.static and view.record.kinematics is not None,
+                state=_state(simulation, view, hit),
+                hit=hit,
+                picked=view.name in picked,
+                overrides=overrides,
+            )
+        )
+    shown = [thing for thing in things if thing.shown]
+    crowd = Crowd(sum(t.kind == "robot" for t in shown), sum(t.kind == "person" for t in shown))
+    for thing in things:
+        if thing.kind in ("robot", "person"):
+            thing.radius = max(thing.radius, crowd.least_radius(thing.kind, layout))
+    return things, crowd
+
+
+def _state(simulation: Simulation, view: ObjectView, hit: Event | None) -> State:
+    if view.role != "robot":
+        return ""
+    if hit is not None and not simulation.arrived[view.row]:
+        return "collided"
+    if simulation.arrived[view.row]:
+        return "arrived"
+    return "stopped" if simulation.stopped[view.row] else ""
+
+
+def _colors(shown: Sequence[ObjectView]) -> dict[int, Any]:
+    """The colour of each object; two to six robots that nobody has given a colour get one each."""
+    colors = {view.id: view.color if view.color != "none" else "k" for view in shown}
+    same = [view for view in shown if view.role == "robot" and view.color in (ROBOT_COLOR, ACKER_COLOR)]
+    others = {str(view.color) for view in shown if view.role == "robot"} - {ROBOT_COLOR, ACKER_COLOR}
+    free = [color for color in CYCLE[:_DISTINCT] if color not in others]
+    if 1 < len(same) <= len(free):
+        colors.update(zip((view.id for view in same), free, strict=False))
+    return colors

@@ -1,0 +1,179 @@
+"""Where objects have been and where they are going: trails that fade, beads of time, goals, waypoints, plans."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from irsim.common.arrays import Floats
+from irsim.graphics.scene.bodies import place
+from irsim.graphics.scene.scene import Circle, Line, Mark, Region, Spots, Stroke
+from irsim.graphics.scene.theme import Theme, mix
+from irsim.objects.drawing.object_marks import trajectory_points
+from irsim.rendering.modern.bodies import dart
+from irsim.rendering.modern.frame import stroke
+from irsim.rendering.modern.layout import Layout
+from irsim.rendering.modern.things import Thing
+
+if TYPE_CHECKING:
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["goal_marks", "path_ahead", "plan_marks", "remaining_goals", "trail_marks"]
+
+_PERSON_TRAIL_Z, _PLAN_Z, _TRAIL_Z, _BEAD_Z, GOAL_Z = 2.2, 2.3, 2.4, 2.45, 2.6
+_AGES = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 17.0, 23.0, math.inf)
+"""A trail has one tint between two of these ages [s]."""
+_PERSON_AGES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
+_TRAIL_FADE_S, _PERSON_FADE_S = 6.0, 1.2
+_TRAIL_S = (math.inf, 10.0, 3.0)
+"""How far back trails reach: with few robots, with some, with many [s]."""
+_CROWDED_WIDTH = 0.8
+"""Factor of the width of trails of more than a few robots."""
+_PERSON_S = (3.0, 1.2)
+"""How far back trails of people reach: of few, of many [s]."""
+_BEAD_S = 5.0
+MAX_BEADED = 6
+"""Number of robots up to which their trails have beads."""
+_BEAD, _BEAD_EDGE = 4.6, 1.1
+_STEP = 1.5
+"""Least distance between points of a trail [u]."""
+_DASHES = (0, (3.6, 2.6))
+_PLAN_ALPHA, _GOAL_ALPHA = 0.85, 0.12
+_DOT = 0.36
+_OPEN_DOT = 6.0
+"""Diameter of a goal where there are more than a few robots [u]."""
+_WAYPOINT, _WAYPOINT_EDGE = 5.0, 1.3
+
+
+def trail_marks(
+    thing: Thing, simulation: Simulation, layout: Layout, theme: Theme, *, level: int, beads: bool, crowded: bool
+) -> list[Mark]:
+    """The way that an object has come: opaque tints, which neither bead at joints nor blacken where they cross.
+
+    Args:
+        thing: The object.
+        simulation: The simulation.
+        layout: The layout.
+        theme: The colours.
+        level: Of robots: 0 few, 1 some, 2 many.
+        beads: Whether moments are marked on the trail.
+        crowded: Whether there are many people.
+    """
+    row, period = thing.view.row, float(simulation.scenario.world.step_time)
+    recorded = simulation.state.recorded(row)
+    robot = thing.kind == "robot"
+    longest = _TRAIL_S[level] if robot else _PERSON_S[crowded]
+    first = 0 if math.isinf(longest) else max(0, recorded - 1 - round(longest / period))
+    states = simulation.state.trajectory(row, first)
+    if first == 0:
+        start = simulation.state.initial_state(row)
+        states = np.concatenate([start[None, : states.shape[1]], states]) if len(states) else states
+    if len(states) < 2:
+        return []
+    points, color = trajectory_points(thing.body, states), thing.shades.edge
+    ages, fade = (_AGES, _TRAIL_FADE_S) if robot else (_PERSON_AGES, _PERSON_FADE_S)
+    newest, oldest = layout.sizes.trail if robot else (2.0, 1.2)
+    marks, last = list[Mark](), len(points) - 1
+    for young, old in zip(ages[-2::-1], ages[:0:-1], strict=True):  # the oldest first
+        end = last - round(young / period)
+        begin = 0 if math.isinf(old) else max(0, last - round(old / period))
+        if end <= begin:
+            continue
+        rest = math.exp(-young / fade)
+        share = 0.32 + 0.60 * rest if robot else 0.02 + 0.38 * rest
+        width = oldest + (newest - oldest) * rest
+        width *= _CROWDED_WIDTH if robot and level else 1.0
+        line = Line(_thinned(points[begin : end + 1], layout.metres(_STEP)))
+        tint = stroke(mix(color, theme.paper, share), width)
+        zorder = _TRAIL_Z if robot else _PERSON_TRAIL_Z
+        marks.append(Mark(thing.number, "trajectory", line, None, tint, 1.0, zorder))
+    every = round(_BEAD_S / period)
+    if beads and every and first == 0 and last > every:
+        places = Spots(np.ascontiguousarray(points[every:last:every]), layout.metres(_BEAD / 2))
+        marks.append(Mark(thing.number, "bead", places, theme.paper, stroke(color, _BEAD_EDGE), 1.0, _BEAD_Z))
+    return marks
+
+
+def _thinned(points: Floats, least: float) -> Floats:
+    """Leave out points of a line that are closer to the one before than can be seen; the ends stay."""
+    if len(points) < 3:
+        return points
+    length = np.cumsum(np.hypot(*np.diff(points, axis=0).T)) // least
+    kept = np.concatenate([[True], np.diff(length, prepend=0.0) > 0])
+    kept[-1] = True
+    thinned: Floats = np.ascontiguousarray(points[kept])
+    return thinned
+
+
+def remaining_goals(thing: Thing, simulation: Simulation) -> list[Floats]:
+    """x, y, heading (which may be NaN) of the present goal and those after it, of an object that can drive there."""
+    if not thing.moves or thing.state == "arrived" or simulation.appeared[thing.view.row] < 0:
+        return []
+    goals = simulation.state.goals(thing.view.row)
+    present = simulation.goal[thing.view.row][:3]
+    if math.isnan(present[0]) or simulation.scenario.is_parked(thing.view.record):
+        return []
+    index = next((i for i, goal in enumerate(goals) if np.allclose(goal[:2], present[:2])), len(goals))
+    later = [np.array([*goal[:3], math.nan][:3], dtype=np.float64) for goal in goals[index + 1 :]]
+    return [np.asarray(present, dtype=np.float64), *later]
+
+
+def path_ahead(thing: Thing, goals: list[Floats], simulation: Simulation) -> Floats:
+    """Corners (K, 2) of the way to the goals: the route that the behavior has planned, else straight lines."""
+    here, row = np.array([thing.pose[:2]]), thing.view.row
+    route = simulation.state.route(row)
+    ends = np.array([goal[:2] for goal in goals])
+    if (
+        route is None
+        or not len(route)
+        or float(np.hypot(*(route[-1, :2] - ends[0]))) > thing.view.record.goal_threshold
+    ):
+        return np.concatenate([here, ends])
+    return np.concatenate([here, _left_of(route[:, :2], here[0]), ends[1:]])
+
+
+def _left_of(route: Floats, here: Floats) -> Floats:
+    """The corners of a route that are still ahead of a place near it."""
+    if len(route) < 2:
+        return route
+    along = np.diff(route, axis=0)
+    square = np.maximum((along**2).sum(axis=1), 1e-12)
+    share = np.clip(((here - route[:-1]) * along).sum(axis=1) / square, 0.0, 1.0)
+    nearest = int(np.hypot(*(route[:-1] + share[:, None] * along - here).T).argmin())
+    left: Floats = route[nearest + 1 :]
+    return left
+
+
+def plan_marks(thing: Thing, path: Floats, layout: Layout) -> list[Mark]:
+    """What is ahead, dashed."""
+    line = stroke(thing.shades.edge, layout.sizes.plan, _DASHES)
+    return [Mark(thing.number, "plan", Line(path), None, line, _PLAN_ALPHA, _PLAN_Z)]
+
+
+def goal_marks(thing: Thing, goals: list[Floats], layout: Layout, theme: Theme, *, level: int) -> list[Mark]:
+    """The last goal as a ring with a dot, or with a dart where the heading counts; waypoints before it as diamonds."""
+    number = thing.number
+    color = thing.shades.edge
+    x, y, heading = (float(value) for value in goals[-1])
+    if level:
+        spot = Circle(x, y, layout.metres(_OPEN_DOT / 2))
+        return [Mark(number, "goal", spot, theme.paper, stroke(color, layout.sizes.goal[1]), 1.0, GOAL_Z)]
+    radius = max(thing.half_width, layout.metres(layout.sizes.goal[0]))
+    disc = Circle(x, y, radius)
+    marks = [
+        Mark(number, "goal", disc, color, Stroke(None), _GOAL_ALPHA, GOAL_Z),
+        Mark(number, "goal", disc, None, stroke(color, layout.sizes.goal[1]), 1.0, GOAL_Z),
+    ]
+    if not math.isnan(heading) and thing.view.record.heading_counts([x, y, heading]):
+        sign = place(dart(0.8 * radius), (x, y, heading))
+        marks.append(Mark(number, "goal", sign, color, Stroke(None), 1.0, GOAL_Z))
+    else:
+        marks.append(Mark(number, "goal", Circle(x, y, _DOT * radius), color, Stroke(None), 1.0, GOAL_Z))
+    half = layout.metres(_WAYPOINT / 2)
+    diamond = np.array([(0.0, -half), (half, 0.0), (0.0, half), (-half, 0.0)])
+    edge = stroke(color, _WAYPOINT_EDGE)
+    for stop in goals[:-1]:
+        marks.append(Mark(number, "goal", Region([stop[:2] + diamond]), theme.paper, edge, 1.0, GOAL_Z))
+    return marks
