@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from irsim import _core as core
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Sector, Spots, Stroke
+from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Sector, Segments, Spots, Stroke
 from irsim.graphics.scene.style import Color
 
 __all__ = ["Box", "Canvas", "geometry_path", "paint", "rgba", "without_glow"]
@@ -124,6 +124,9 @@ def paint(
         face = _TRANSPARENT if fill is None else rgba(fill, mark.alpha)
         if mark.glow is not None and isinstance(shape, Region):
             painter.glow(pixels, shape.rings[0], *mark.glow, face)
+        elif isinstance(shape, Segments):
+            for points in shape.points:
+                painter.line(pixels, points, edge, width, ends[1], ends[0] == "round")
         elif isinstance(shape, Spots):
             painter.discs(pixels, shape.points, shape.radius, face, edge, width)
         elif isinstance(shape, Circle):
@@ -158,6 +161,8 @@ def geometry_path(geometry: Geometry) -> Path:
     if isinstance(geometry, Spots):
         discs = [_scale_and_move(_UNIT_CIRCLE, Circle(x, y, geometry.radius)) for x, y in geometry.points.tolist()]
         return Path.make_compound_path(*discs)
+    if isinstance(geometry, Segments):
+        return Path.make_compound_path(*[Path(points) for points in geometry.points])
     if isinstance(geometry, Line):
         return Path(geometry.points)
     if isinstance(geometry, Sector):

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.figure.compositor import Compositor
 from irsim.graphics.figure.figure import inches
-from irsim.graphics.scene.scene import Beams, Circle, Geometry, Label, Line, Mark, Region, Scene, Spots
+from irsim.graphics.scene.scene import Beams, Circle, Geometry, Label, Line, Mark, Region, Scene, Segments, Spots
 from irsim.graphics.scene.tracks import Track
 
 __all__ = ["SceneFigure3D"]
@@ -121,6 +121,8 @@ def outlines(geometry: Geometry) -> list[NDArray[np.float64]]:
         return list(geometry.rings)
     if isinstance(geometry, Line):
         return [geometry.points]
+    if isinstance(geometry, Segments):
+        return list(geometry.points)
     if isinstance(geometry, Spots):
         return [ring for x, y in geometry.points.tolist() for ring in outlines(Circle(x, y, geometry.radius))]
     full = isinstance(geometry, Circle)

@@ -14,7 +14,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from irsim.common.arrays import Floats
-from irsim.components.maps._site import HALF
+from irsim.components.maps._site import HALF, UNKNOWN_AS
 from irsim.graphics.figure.canvas import Canvas, geometry_path, paint, rgba, without_glow
 from irsim.graphics.scene.scene import Beams, Dots, Fog, GridImage, Mark, Scene
 from irsim.graphics.scene.style import Color
@@ -65,6 +65,8 @@ class GridLayer:
             self.artist.set_data(255 - np.minimum(grid.levels, 100).T * np.float32(2.55))
         else:
             cells = np.zeros((*grid.levels.T.shape, 4))
+            if grid.unknown is not None:
+                cells[UNKNOWN_AS["free"] == grid.levels.T] = rgba(grid.unknown)
             cells[grid.levels.T > HALF] = rgba(grid.color)
             self.artist.set_data(cells)
             self.artist.set_interpolation("nearest")
@@ -72,7 +74,22 @@ class GridLayer:
 
 
 PARTS = (
-    *("paper", "grid", "field", "zone", "hatch", "trail", "trajectory", "plan", "bead", "fov", "scan", "hit", "goal"),
+    *(
+        "paper",
+        "grid",
+        "field",
+        "zone",
+        "hatch",
+        "contour",
+        "trail",
+        "trajectory",
+        "plan",
+        "bead",
+        "fov",
+        "scan",
+        "hit",
+        "goal",
+    ),
     *("halo", "body", "beams", "arrow", "dart", "head", "ring", "contact", "badge", "sign", "frame", "foot"),
 )
 """Drawing order of the parts that have the same zorder."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from irsim.common import outline as outlines
 from irsim.common.outline import outline
-from irsim.graphics.scene.scene import Circle, Geometry, Line, Picture, Region, Sector, Spots
+from irsim.graphics.scene.scene import Circle, Geometry, Line, Picture, Region, Sector, Segments, Spots
 
 if TYPE_CHECKING:
     from irsim._core import State
@@ -151,7 +151,7 @@ def bounds(geometry: Geometry) -> tuple[float, float, float, float]:
     if isinstance(geometry, Circle | Sector):
         x, y, r = geometry.x, geometry.y, geometry.radius
         return x - r, y - r, x + r, y + r
-    points = geometry.points if isinstance(geometry, Line | Spots) else np.concatenate(geometry.rings)
+    points = np.concatenate(geometry.rings) if isinstance(geometry, Region) else geometry.points.reshape(-1, 2)
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
     reach = geometry.radius if isinstance(geometry, Spots) else 0.0
     return float(x0 - reach), float(y0 - reach), float(x1 + reach), float(y1 + reach)
@@ -175,6 +175,8 @@ def point_on(geometry: Geometry, view: tuple[float, float, float, float] | None 
         shape = shapely.Point(geometry.x, geometry.y).buffer(geometry.radius)
     elif isinstance(geometry, Spots):
         shape = shapely.MultiPoint(geometry.points).buffer(geometry.radius)
+    elif isinstance(geometry, Segments):
+        shape = shapely.MultiLineString(list(geometry.points))
     elif isinstance(geometry, Line):
         shape = shapely.MultiLineString(list(zip(geometry.points[:-1], geometry.points[1:], strict=True)))
     else:
@@ -183,7 +185,7 @@ def point_on(geometry: Geometry, view: tuple[float, float, float, float] | None 
     pieces = [piece for piece in getattr(seen, "geoms", [seen]) if not piece.is_empty]
     if not pieces:
         return None
-    if isinstance(geometry, Line):
+    if isinstance(geometry, Line | Segments):
         middle = max(pieces, key=lambda piece: piece.length).interpolate(0.5, normalized=True)
         return float(middle.x), float(middle.y)
     piece = max(pieces, key=lambda piece: piece.area)

@@ -34,6 +34,7 @@ __all__ = [
     "Region",
     "Scene",
     "Sector",
+    "Segments",
     "Spots",
     "Stroke",
     "region_extent",
@@ -86,7 +87,14 @@ class Spots:
     radius: float
 
 
-Geometry = Circle | Region | Line | Sector | Spots
+@dataclass(slots=True, eq=False)
+class Segments:
+    """Straight lines, (K, 2, 2): start and end of each."""
+
+    points: Floats
+
+
+Geometry = Circle | Region | Line | Sector | Spots | Segments
 
 _REGION_VALUES = 4
 MAX_COORDINATE_M = 1e7
@@ -219,7 +227,8 @@ class Picture:
 class GridImage:
     """A map: ``levels`` (nx, ny) occupancy 0 to 100, i along +x, over ``extent`` (x from, x to, y from, y to).
 
-    With a ``color``, occupied cells have it and free cells are transparent; else levels are shades of grey.
+    With a ``color``, occupied cells have it, ``unknown`` is the colour of cells that are neither free nor occupied, and
+    free cells are transparent; else levels are shades of grey.
     """
 
     object: int
@@ -227,6 +236,7 @@ class GridImage:
     extent: tuple[float, float, float, float]
     zorder: float
     color: Color | None = None
+    unknown: Color | None = None
 
 
 @dataclass(slots=True, eq=False)

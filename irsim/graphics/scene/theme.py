@@ -7,7 +7,7 @@ page are written from it.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, Literal
 
 from irsim.options.colors import rgb
@@ -19,6 +19,8 @@ Kind = Literal["robot", "person", "thing", "still"]
 """What an object is drawn as; a thing moves, but is neither robot nor person."""
 _STEPS = 40
 """Number of steps in which a colour is mixed with black or white until it is seen."""
+_KNOWN = 4096
+"""Number of mixed colours that are remembered."""
 _BLACK, _WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 _QUIET_SHARE = 0.22
 """Share of its own colour that the fill of a static body has."""
@@ -94,6 +96,7 @@ class Theme:
         values = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name != "name"}
         return {name: value for name, value in values.items() if isinstance(value, str)}
 
+    @lru_cache(maxsize=_KNOWN)  # noqa: B019 - there are two themes
     def shades(self, kind: Kind, color: Any) -> Shades:
         """The shades in which the things of one object are drawn.
 
@@ -189,6 +192,7 @@ DARK = Theme(
 THEMES = {theme.name: theme for theme in (LIGHT, DARK)}
 
 
+@lru_cache(maxsize=_KNOWN)
 def seen(color: Any, paper: Any, least: float) -> str:
     """Return a colour that has at least this contrast with a paper, and is the colour itself where it has.
 
@@ -212,6 +216,7 @@ def contrast(one: Any, other: Any) -> float:
     return (bright + 0.05) / (dark + 0.05)
 
 
+@lru_cache(maxsize=_KNOWN)
 def mix(color: Any, other: Any, share: float) -> str:
     """Return ``#rrggbb`` with this share of the first colour, the rest of the second."""
     return hex_of(_between(rgb(other), rgb(color), share))

@@ -12,7 +12,19 @@ from numpy.typing import NDArray
 from irsim.common.arrays import Floats
 from irsim.components.maps._site import HALF
 from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.scene import Bounds, Circle, Fog, Geometry, GridImage, Label, Line, Mark, Region, Stroke
+from irsim.graphics.scene.scene import (
+    Bounds,
+    Circle,
+    Fog,
+    Geometry,
+    GridImage,
+    Label,
+    Line,
+    Mark,
+    Region,
+    Segments,
+    Stroke,
+)
 from irsim.graphics.scene.theme import Theme, seen
 from irsim.graphics.scene.zones import draw_zones
 from irsim.rendering.modern.frame import FRAME, label, stroke
@@ -39,7 +51,7 @@ _DASHES = (0, (4, 3))
 
 def shown_grid(grid: GridImage, theme: Theme) -> GridImage:
     """A map in the colours of a theme."""
-    return replace(grid, color=theme.rock, zorder=_MAP_Z)
+    return replace(grid, color=theme.rock, unknown=theme.still, zorder=_MAP_Z)
 
 
 def contour_marks(grid: GridImage, theme: Theme) -> list[Mark]:
@@ -49,12 +61,11 @@ def contour_marks(grid: GridImage, theme: Theme) -> list[Mark]:
     dx, dy = (x1 - x0) / grid.levels.shape[0], (y1 - y0) / grid.levels.shape[1]
     upright = _runs(full[1:, 1:-1] != full[:-1, 1:-1])  # edges between columns, by column
     level = _runs((full[1:-1, 1:] != full[1:-1, :-1]).T)
-    lines = [((x0 + c * dx, y0 + a * dy), (x0 + c * dx, y0 + b * dy)) for c, a, b in upright]
-    lines += [((x0 + a * dx, y0 + c * dy), (x0 + b * dx, y0 + c * dy)) for c, a, b in level]
-    if len(lines) > MAX_CONTOUR:
+    lines = [((c, a), (c, b)) for c, a, b in upright] + [((a, c), (b, c)) for c, a, b in level]
+    if not 0 < len(lines) <= MAX_CONTOUR:
         return []
-    edge = stroke(theme.still_edge, _CONTOUR)
-    return [Mark(grid.object, "body", Line(np.array(line)), None, edge, 1.0, _MAP_Z + 0.05) for line in lines]
+    places = Segments(np.array(lines) * (dx, dy) + (x0, y0))
+    return [Mark(grid.object, "contour", places, None, stroke(theme.still_edge, _CONTOUR), 1.0, _MAP_Z + 0.05)]
 
 
 def _runs(edges: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
@@ -76,7 +87,7 @@ def fog_marks(fog: Fog, layout: Layout, theme: Theme) -> list[Mark]:
     columns, rows = fog.explored.shape
     step = layout.metres(_HATCH_STEP) * np.sqrt(2)
     sample = min((x1 - x0) / columns, (y1 - y0) / rows) / _SAMPLES_PER_CELL
-    edge, marks = stroke(theme.still_edge, _HATCH), list[Mark]()
+    lines = []
     for start in np.arange(x0 - (y1 - y0), x1, step):
         along = np.arange(0.0, y1 - y0, sample)
         x, y = start + along, y0 + along
@@ -85,9 +96,11 @@ def fog_marks(fog: Fog, layout: Layout, theme: Theme) -> list[Mark]:
         j = np.clip(((y - y0) / (y1 - y0) * rows).astype(int), 0, rows - 1)
         hidden = inside & ~np.asarray(fog.explored, dtype=bool)[i, j]
         for _, a, b in _runs(hidden[None]):
-            line = Line(np.array([(x[a], y[a]), (x[b - 1], y[b - 1])]))
-            marks.append(Mark(FRAME, "hatch", line, None, edge, _HATCH_ALPHA, FOG_Z + 0.01))
-    return marks
+            lines.append(((x[a], y[a]), (x[b - 1], y[b - 1])))
+    if not lines:
+        return []
+    edge = stroke(theme.still_edge, _HATCH)
+    return [Mark(FRAME, "hatch", Segments(np.array(lines)), None, edge, _HATCH_ALPHA, FOG_Z + 0.01)]
 
 
 def is_seen(fog: Fog, geometry: Geometry) -> bool:

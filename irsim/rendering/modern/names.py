@@ -29,8 +29,10 @@ _ASCENT, _DESCENT = 0.76, 0.22
 _TAKEN = ("goal", "contact", "badge", "head", "ring")
 _MOVING_Z = 4.0
 """Bodies from this layer on are robots, people and other things that move."""
+_LEAST_LINE_Z = 2.3
+"""Lines of lower layers, which are trails of people, may be under names."""
 _SPREAD = 6.0
-"""Distance of the points of trails and plans that names avoid [u]."""
+"""Distance of the points of plans that names avoid [u]."""
 
 
 @dataclass(frozen=True)
@@ -149,8 +151,13 @@ def _is_moving(mark: Mark) -> bool:
 
 def _box(mark: Mark, layout: Layout) -> tuple[float, float, float, float]:
     left, bottom, right, top = bounds(mark.geometry)
-    (x0, y0), (x1, y1) = layout.places(np.array([(left, bottom), (right, top)])).tolist()
-    return x0, y0, x1, y1
+    x, y, scale = layout.world[0], layout.world[2], layout.scale
+    return (
+        (left - x) * scale + layout.left,
+        (bottom - y) * scale + layout.bottom,
+        (right - x) * scale + layout.left,
+        (top - y) * scale + layout.bottom,
+    )
 
 
 def _text_box(one: Label, layout: Layout, sizes: TextSizes) -> tuple[float, float, float, float]:
@@ -161,17 +168,17 @@ def _text_box(one: Label, layout: Layout, sizes: TextSizes) -> tuple[float, floa
 
 
 def _points(marks: Sequence[Mark], part: str, layout: Layout) -> Floats:
-    """Points along lines, close enough together that a text cannot lie between two of them [u]."""
+    """Points along lines, so close together that a text hardly lies between two of them [u]."""
     found = [np.empty((0, 2))]
     for mark in marks:
-        if mark.part != part or not isinstance(mark.geometry, Line):
+        if mark.part != part or not isinstance(mark.geometry, Line) or mark.zorder < _LEAST_LINE_Z:
             continue
         points = layout.places(mark.geometry.points)
-        length = np.hypot(*np.diff(points, axis=0).T)
-        along = np.concatenate([[0.0], np.cumsum(length)])
-        if along[-1] > 0:
+        if part == "plan":  # its corners are far apart
+            along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
             at = np.linspace(0.0, along[-1], 2 + int(along[-1] / _SPREAD))
-            found.append(np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1))
+            points = np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1)
+        found.append(points)
     return np.concatenate(found)
 
 

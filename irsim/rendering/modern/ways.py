@@ -85,7 +85,8 @@ def trail_marks(
         share = 0.32 + 0.60 * rest if robot else 0.02 + 0.38 * rest
         width = oldest + (newest - oldest) * rest
         width *= _CROWDED_WIDTH if robot and level else 1.0
-        line = Line(_thinned(points[begin : end + 1], layout.metres(_STEP)))
+        part = points[begin : end + 1]
+        line = Line(_thinned(part, layout.metres(_STEP)) if robot else part)
         tint = stroke(mix(color, theme.paper, share), width)
         zorder = _TRAIL_Z if robot else _PERSON_TRAIL_Z
         marks.append(Mark(thing.number, "trajectory", line, None, tint, 1.0, zorder))
@@ -100,8 +101,11 @@ def _thinned(points: Floats, least: float) -> Floats:
     """Leave out points of a line that are closer to the one before than can be seen; the ends stay."""
     if len(points) < 3:
         return points
-    length = np.cumsum(np.hypot(*np.diff(points, axis=0).T)) // least
-    kept = np.concatenate([[True], np.diff(length, prepend=0.0) > 0])
+    steps = points[1:] - points[:-1]
+    length = np.cumsum(np.hypot(steps[:, 0], steps[:, 1])) // least
+    kept = np.ones(len(points), dtype=bool)
+    kept[1] = length[0] > 0
+    kept[2:] = length[1:] > length[:-1]
     kept[-1] = True
     thinned: Floats = np.ascontiguousarray(points[kept])
     return thinned
