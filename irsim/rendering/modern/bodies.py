@@ -57,18 +57,18 @@ def moving_marks(thing: Thing, theme: Theme) -> list[Mark]:
 
 def person_marks(thing: Thing, layout: Layout, theme: Theme) -> list[Mark]:
     """Head and shoulders as seen from above; the head is in front."""
-    body, r = thing.mark, thing.radius
+    body, r = thing.mark, thing.glyph_radius
     if body is None:
         return []
     number, fill, alpha = thing.number, thing.shades.fill, body.alpha
-    pose: Pose = (*thing.pose[:2], thing.course)
+    pose: Pose = (*thing.drawn_at[:2], thing.course)
     small = r * layout.scale < _SMALL_PERSON
     marks = list[Mark]()
     along, across, head, rims = (0.575, 1.05, 0.56, (0.5, 0.7)) if small else (0.525, 0.99, 0.50, (_RIM, _RIM))
     if small:
         fill = mix(fill, theme.person_head, 0.75)
     else:
-        disc = Circle(*thing.pose[:2], r)
+        disc = Circle(*thing.drawn_at[:2], r)
         marks.append(Mark(number, "halo", disc, fill, Stroke(None), 0.13 * alpha, _PERSON_Z))
         marks.append(Mark(number, "halo", disc, None, stroke(fill, _RIM), 0.45 * alpha, _PERSON_Z))
     shoulders = place(_ellipse(-0.12 * r, along * r, across * r), pose)
@@ -84,13 +84,13 @@ def robot_marks(thing: Thing, layout: Layout, theme: Theme) -> list[Mark]:
     arrived = thing.state == "arrived"
     fill = mix(shades.fill, theme.paper, _ARRIVED_SHARE) if arrived else shades.fill
     inner = shades.edge if arrived else shades.dart
-    turned: Pose = (*thing.pose[:2], thing.course)
+    turned: Pose = (*thing.drawn_at[:2], thing.course)
     if body is None:
         return []
     own, shape = thing.view.record.plot, body.geometry
-    disc = thing.is_round or thing.radius > thing.body.radius or isinstance(shape, Line)
+    disc = thing.is_round or thing.glyph_radius > thing.body.radius or isinstance(shape, Line)
     if disc:
-        shape = Circle(*thing.pose[:2], thing.radius)
+        shape = Circle(*thing.drawn_at[:2], thing.glyph_radius)
     halo = 2 * (_HALO_ROUND if disc else _HALO_OTHER) + _EDGE
     width = float(own.obj_linewidth) if "obj_linewidth" in own.model_fields_set else _EDGE
     marks = [
@@ -99,7 +99,7 @@ def robot_marks(thing: Thing, layout: Layout, theme: Theme) -> list[Mark]:
     ]
     marks += [] if disc else _wheels(thing, layout, theme, body.alpha)
     if thing.wants("show_arrow"):
-        sign = dart(thing.radius) if disc else dart(thing.half_width, thing.body.length / 2, thing.body.middle)
+        sign = dart(thing.glyph_radius) if disc else dart(thing.half_width, thing.body.length / 2, thing.body.middle)
         marks.append(Mark(number, "dart", place(sign, turned), inner, Stroke(None), body.alpha, _ROBOT_Z + 0.01))
     return marks
 
@@ -133,7 +133,7 @@ def _wheels(thing: Thing, layout: Layout, theme: Theme, alpha: float) -> list[Ma
     for x, angle in ((0.0, 0.0), (float(record.wheelbase), steering)):
         for side in (-1, 1):
             turned = place(wheel, (x, body.middle[1] + side * (body.width / 2 - wide), angle))
-            shape: Geometry = place(turned, thing.pose)
+            shape: Geometry = place(turned, thing.drawn_at)
             marks.append(Mark(thing.number, "arrow", shape, theme.ink, Stroke(None), alpha, _ROBOT_Z))
     return marks
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from irsim.graphics.figure.figure import SceneFigure
-from irsim.graphics.figure.pictures import Pictures
+from irsim.graphics.figure.pictures import BUNDLED, Pictures
 from irsim.graphics.scene.scene import Bounds, Scene
 from irsim.graphics.scene.theme import THEMES, Theme
 from irsim.objects.drawing.scene_builder import SceneBuilder
@@ -25,11 +25,9 @@ def theme_of(simulation: Simulation, name: str | None = None) -> Theme:
     return THEMES[name or simulation.scenario.world.plot.theme]
 
 
-def own_images(simulation: Simulation, has_picture: Callable[[str], bool]) -> Callable[[str], bool]:
-    """Which images stand for bodies: those that the scenario names, but not the default images of drives."""
-    drives = (record.kinematics for record in simulation.scenario.objects)
-    usual = {getattr(drive, "picture", None) for drive in drives}
-    return lambda name: name not in usual and has_picture(name)
+def own_images(has_picture: Callable[[str], bool]) -> Callable[[str], bool]:
+    """Which images stand for bodies: files of the user, but not the images of irsim, whose robots have glyphs."""
+    return lambda name: name not in BUNDLED and has_picture(name)
 
 
 def new_figure(layout: Layout, theme: Theme, pictures: Pictures, figure: Any = None) -> SceneFigure:
@@ -56,7 +54,7 @@ class Picture:
 
     def __init__(self, simulation: Simulation, theme: Theme, pictures: Pictures, world: int = 0) -> None:
         self.simulation, self.world, self.theme = simulation, world, theme
-        self._images = own_images(simulation, pictures.has)
+        self._images = own_images(pictures.has)
         self._style = ModernStyle(simulation, world, theme)
         self._builders: dict[bool, SceneBuilder] = {}
 

@@ -93,8 +93,8 @@ def fov_marks(shapes: Sequence[Mark], thing: Thing, theme: Theme) -> list[Mark]:
     marks = list[Mark]()
     for shape in shapes:
         ring = _ring_of(shape)
-        reach = 1.0001 * float(np.hypot(*(ring - thing.pose[:2]).T).max())
-        glow = (*thing.pose[:2], reach / 0.9)  # the rim stays visible: it is the edge of the view
+        reach = 1.0001 * float(np.hypot(*(ring - thing.drawn_at[:2]).T).max())
+        glow = (*thing.drawn_at[:2], reach / 0.9)  # the rim stays visible: it is the edge of the view
         marks.append(Mark(thing.number, "fov", Region([ring]), color, Stroke(None), _FOV_ALPHA, _FOV_Z, glow))
         marks.append(Mark(thing.number, "fov", Region([ring]), None, edge, _FOV_EDGE_ALPHA, _FOV_Z + 0.01))
     return marks

@@ -57,9 +57,9 @@ def star_marks(
 
 def state_marks(thing: Thing, layout: Layout, theme: Theme, *, level: int) -> list[Mark]:
     """A ring and a badge on the rim of a robot; what they mean differs by shape, not by colour alone."""
-    x, y, _ = thing.pose
+    x, y, _ = thing.drawn_at
     number, marks = thing.number, list[Mark]()
-    rim = thing.radius if thing.is_round or thing.radius > thing.body.radius else thing.body.radius
+    rim = thing.glyph_radius if thing.is_round or thing.glyph_radius > thing.body.radius else thing.body.radius
     if thing.picked:
         ring = Circle(x, y, rim + layout.metres(_PICKED_GAP))
         marks.append(Mark(number, "ring", ring, None, stroke(theme.near, _PICKED_RING), 1.0, _RING_Z))

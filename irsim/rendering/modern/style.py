@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from irsim.graphics.figure.measuring import TextSizes
 from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.scene import GridImage, Label, Mark, Scene, Stroke
+from irsim.graphics.scene.scene import Circle, GridImage, Label, Mark, Scene, Stroke
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern import bodies, frame, ground, heading, names, sensing, signs, ways
 from irsim.rendering.modern.layout import Layout
@@ -290,7 +290,7 @@ def _wishes(
 
 
 def _has_name(thing: Thing, crowd: Crowd) -> bool:
-    if not thing.shown or thing.mark is None or not thing.wants("show_text", thing.kind == "robot"):
+    if not thing.shown or not thing.wants("show_text", thing.kind == "robot"):
         return False
     if thing.kind != "robot":
         return "show_text" in thing.view.record.plot.model_fields_set and thing.view.shape != "walls"
@@ -302,10 +302,10 @@ def _name_wish(thing: Thing) -> names.Wish:
     view, drawing = thing.view, thing.view.drawing
     unnamed = view.name == f"{view.role}_{view.id}"
     text = (view.name if unnamed else drawing.label) if drawing.text is None else str(drawing.text)
-    assert thing.mark is not None
-    left, bottom, right, top = bounds(thing.mark.geometry)
-    reach = max((right - left) / 2, thing.radius), max((top - bottom) / 2, thing.radius)
-    if not thing.is_round and thing.radius <= thing.body.radius:
+    shape = Circle(*thing.drawn_at[:2], thing.body.radius) if thing.mark is None else thing.mark.geometry
+    left, bottom, right, top = bounds(shape)
+    reach = max((right - left) / 2, thing.glyph_radius), max((top - bottom) / 2, thing.glyph_radius)
+    if not thing.is_round and thing.glyph_radius <= thing.body.radius:
         reach = (right - left) / 2, (top - bottom) / 2
     return names.Wish(thing.number, "name", text, thing.shades.name, ((left + right) / 2, (bottom + top) / 2), reach)
 

@@ -43,9 +43,9 @@ class Thing:
 
     Attributes:
         mark: The mark of its body, with its true footprint; None for one that is drawn as an image or not at all.
-        pose: x, y [m], heading [rad].
+        drawn_at: x, y [m], heading [rad] at which it is drawn; before it appears, where it will.
         course: Where it is going, which may differ from its heading [rad].
-        radius: Radius that its glyph has in the picture [m].
+        glyph_radius: Radius that its glyph has in the picture [m].
         shown: Whether it is in the part of the world that the picture shows.
         moves: Whether it can move.
         hit: Its first collision.
@@ -56,9 +56,9 @@ class Thing:
     shades: Shades
     body: Body
     mark: Mark | None
-    pose: tuple[float, float, float]
+    drawn_at: tuple[float, float, float]
     course: float
-    radius: float
+    glyph_radius: float
     shown: bool
     moves: bool
     state: State
@@ -155,9 +155,9 @@ def read_things(
                 shades=theme.shades(kind, colors[view.id]),
                 body=body,
                 mark=marks.get(view.id),
-                pose=(x, y, heading),
+                drawn_at=(x, y, heading),
                 course=builder.heading_of(view, (x, y, heading)),
-                radius=body.radius,
+                glyph_radius=body.radius,
                 shown=x0 - body.radius <= x <= x1 + body.radius and y0 - body.radius <= y <= y1 + body.radius,
                 moves=not view.record.static and view.record.kinematics is not None,
                 state=_state(simulation, view, hit),
@@ -170,18 +170,18 @@ def read_things(
     crowd = Crowd(sum(t.kind == "robot" for t in shown), sum(t.kind == "person" for t in shown))
     for thing in things:
         if thing.kind in ("robot", "person"):
-            thing.radius = max(thing.radius, crowd.least_radius(thing.kind, layout))
+            thing.glyph_radius = max(thing.glyph_radius, crowd.least_radius(thing.kind, layout))
     return things, crowd
 
 
 def _state(simulation: Simulation, view: ObjectView, hit: Event | None) -> State:
     if view.role != "robot":
         return ""
-    if hit is not None and not simulation.arrived[view.row]:
-        return "collided"
     if simulation.arrived[view.row]:
         return "arrived"
-    return "stopped" if simulation.stopped[view.row] else ""
+    if not simulation.stopped[view.row]:
+        return ""  # a robot that touched something and drives on has its star
+    return "stopped" if hit is None else "collided"
 
 
 def _colors(shown: Sequence[ObjectView]) -> dict[int, Any]:

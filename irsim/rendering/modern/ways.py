@@ -126,7 +126,7 @@ def remaining_goals(thing: Thing, simulation: Simulation) -> list[Floats]:
 
 def path_ahead(thing: Thing, goals: list[Floats], simulation: Simulation) -> Floats:
     """Corners (K, 2) of the way to the goals: the route that the behavior has planned, else straight lines."""
-    here, row = np.array([thing.pose[:2]]), thing.view.row
+    here, row = np.array([thing.drawn_at[:2]]), thing.view.row
     route = simulation.state.route(row)
     ends = np.array([goal[:2] for goal in goals])
     if (

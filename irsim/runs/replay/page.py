@@ -22,5 +22,5 @@ def page(data: bytes | None = None, *, title: str = "irsim replay") -> str:
         title: Title of the window.
     """
     content = "" if data is None else base64.b64encode(data).decode()
-    texts = {"title": html.escape(title), "data": content}
-    return one_page(_SOURCES, bundle(_SOURCES), "img-src data:", variables=css_variables(), **texts)
+    policy, variables = "img-src data:", css_variables()
+    return one_page(_SOURCES, bundle(_SOURCES), policy, variables=variables, title=html.escape(title), data=content)
