@@ -35,7 +35,7 @@ def audit_all(names: Sequence[str | Path], **options: Any) -> AuditResult:
         **options: Further arguments of :func:`audit_submission`.
 
     Raises:
-        InputError: Options of submissions are given, and none is named.
+        InputError: Options of submissions are given without a submission.
     """
     submissions = [name for name in names if (Path(name) / MANIFEST).exists()]
     if not submissions and any(
@@ -83,7 +83,7 @@ def audit_submission(
     if replay is not None and replay != "all":
         replay = check_whole_number("replay", replay, 1)
     if replay is None and salt is not None:
-        raise InputError("salt draws the episodes that are run again, and none are", "give replay, too")
+        raise InputError("salt draws the episodes that are run again, which replay asks for", "give replay, too")
     place, problems = Path(folder), Problems()
     manifest = read_manifest(place, problems)
     result: SuiteResult | None = None

@@ -72,7 +72,7 @@ def write_submission(result: BenchmarkResult, folder: Path) -> Path:
 
 
 def _copy_policies(plan: Plan, folder: Path) -> list[str]:
-    """Copy the networks of the user, so that others can run them; those of irsim are wherever it is."""
+    """Copy the networks of the user, so that others can run them; irsim's own are wherever it is."""
     copies = list[str]()
     for name, text in plan.policies.items():
         file = file_of(plan.sources.get(name, text))

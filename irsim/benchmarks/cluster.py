@@ -26,6 +26,7 @@ from irsim.common.installed import version
 from irsim.common.text import clean
 from irsim.policies.catalog import file_of, files_beside, has_inner_files, with_file
 from irsim.scenario.behavior_override import check_behavior_name
+from irsim.simulation.engine import program
 
 __all__ = ["ClusterError", "run_on_cluster"]
 
@@ -90,7 +91,7 @@ def run_on_cluster(
             while True:
                 while len(running) < size.chunks() and (chunk := queue.take(size.cores)):
                     wanted = [(number[tasks[index].job], tasks[index].seed) for index in chunk]
-                    running[remote.remote(version(), shared, wanted, [])] = chunk
+                    running[remote.remote(program(), shared, wanted, [])] = chunk
                 if not running:
                     if (index := queue.failed()) is None:
                         break
@@ -248,11 +249,11 @@ def _remote_function() -> Callable[..., Mapping[str, Any]]:
 
         try:
             from irsim.benchmarks.cluster import check_jobs, run_chunk
-            from irsim.common.installed import version
+            from irsim.simulation.engine import program
         except ImportError as error:
             return {"missing": str(error), "node": platform.node()}
-        if version() != expected:
-            return {"version": version(), "node": platform.node()}
+        if program() != expected:
+            return {"version": program(), "node": platform.node()}
         if checked and (problem := check_jobs(shared, checked, ray.get)) is not None:
             return {"problem": problem, "node": platform.node()}
         return {"chunk": run_chunk(shared, tasks, ray.get)}
@@ -267,7 +268,7 @@ def _check(ray: Any, remote: Any, shared: Any, jobs: Sequence[Job]) -> None:
         ClusterError: See :func:`run_on_cluster`.
     """
     first = {(job.behavior, job.imports): place for place, job in reversed(list(enumerate(jobs)))}
-    ref = remote.remote(version(), shared, [], sorted(first.values()))
+    ref = remote.remote(program(), shared, [], sorted(first.values()))
     try:
         answer = ray.get(ref, timeout=_FIRST_S)
     except ray.exceptions.GetTimeoutError:
@@ -287,7 +288,7 @@ def _raise_if_unfit(answer: Mapping[str, Any]) -> None:
         what = f"irsim cannot be imported on {node}: {clean(answer['missing'], 200)}"
         fix = f"install irsim-mcp {version()} on every machine of the cluster"
     elif "version" in answer:
-        what = f"{node} has irsim {clean(answer['version'])}, and this is irsim {version()}: their results may differ"
+        what = f"{node} has irsim {clean(answer['version'])}, and this is irsim {program()}: their results may differ"
         fix = f"install irsim-mcp {version()} on every machine of the cluster"
     elif "problem" in answer:
         what = f"{node} cannot run what this process can: {clean(answer['problem'], 400)}"

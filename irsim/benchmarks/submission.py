@@ -80,7 +80,7 @@ class Manifest(BaseModel):
 
 
 def sample_seed(plan: Plan) -> str:
-    """What decides the sample: suite, scenarios, policies and seeds, in whatever order the plan has them."""
+    """The text that decides the sample: a hash of suite, scenarios, policies and seeds, whatever their order is."""
     policies = [f"{text} {plan.digests.get(name, '')}" for name, text in plan.policies.items()]
     parts = [sorted(scenario.name for scenario in plan.scenarios), sorted(policies), sorted(plan.seeds)]
     return short_hash(json.dumps([plan.suite_hash, *parts]))

@@ -184,7 +184,7 @@ class SubmissionAudit(Result):
     not_replayed: list[str] = Field(default_factory=list)
     """Drawn episodes that could not be run again, and why, in words."""
     notes: list[str] = Field(default_factory=list)
-    """What was not compared otherwise, in words."""
+    """Other comparisons that were left out, in words."""
     problems: list[Finding] = Field(default_factory=list)
     """Everything that is wrong, the first 50, each with the file that it is about."""
     problem_count: int = 0

@@ -12,8 +12,9 @@ from pathlib import Path
 
 import irsim._core as core
 from irsim.common.hashing import digest
+from irsim.common.installed import version
 
-__all__ = ["ENGINE_PARTS", "engine"]
+__all__ = ["ENGINE_PARTS", "engine", "program"]
 
 ENGINE_PARTS = (
     *("common", "options", "components", "scenario", "simulation", "objects", "navigation", "policies", "compat"),
@@ -30,6 +31,11 @@ def engine() -> str:
     files = [file for part in ENGINE_PARTS for file in _sources(root / part)]
     texts = (f"{file.relative_to(root).as_posix()} {digest(_text(file))}\n" for file in sorted(files))
     return digest(core.sources, "\n", *texts)[:_LENGTH]
+
+
+def program() -> str:
+    """Version and engine, as two machines must have them in common to share a benchmark."""
+    return f"{version()}, engine {engine()}"
 
 
 def _sources(part: Path) -> list[Path]:

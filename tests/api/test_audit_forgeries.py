@@ -66,7 +66,7 @@ class Forger:
         return [row for row in self.result.episodes if self.key(row) in keys]
 
     def change_rows(self, how: Callable[[EpisodeRow], EpisodeRow | None]) -> None:
-        """Change or drop rows; tables follow, and the sample becomes that of the rows that are left."""
+        """Change or drop rows; tables follow, and the sample is drawn anew from the rows that are left."""
         rows = [changed for row in self.result.episodes if (changed := how(row)) is not None]
         self.result = with_episodes(self.result, rows)  # type: ignore[assignment]
         places = {(one.scenario, one.policy, one.seed): one for one in self.manifest.sample}
@@ -151,7 +151,7 @@ def edit(path: Path, how: Callable[[Any], Any]) -> None:
 
 
 def better(row: EpisodeRow) -> EpisodeRow:
-    """The row of a failed episode as that of a success."""
+    """The row of a failed episode, made a success."""
     metrics = {**row.metrics, "success": 1.0, "goal_reached": 1.0, "collision": 0.0, "timeout": 0.0}
     return row.model_copy(update={"outcome": "success", "failures": {}, "metrics": metrics})
 
@@ -175,7 +175,7 @@ def test_an_honest_submission_passes(honest: Path, replay: Any) -> None:
 
 
 def test_a_whole_forgery_without_changes_passes(forger: Forger) -> None:
-    """What the forger writes is as the honest author writes it, so that the audit finds the forgery and no slip."""
+    """The forger writes files as the honest author does, so that the audit finds the forgery and no slip."""
     forger.change_rows(lambda row: row)
     result = audit_submission(forger.sign(), replay="all", workers=1)
     assert result.equal, causes(result)
@@ -219,7 +219,7 @@ def nothing_random(forger: Forger) -> None:
 
 
 def another_plan(forger: Forger) -> None:
-    """One of 400 equivalent plans: with a policy that drives nobody."""
+    """One of 400 equivalent plans: with a policy that drives no robot."""
     forger.plan = forger.plan.model_copy(update={"company": {"spare": "{name: dash, angle_tolerance: 0.123}"}})
 
 
@@ -242,6 +242,21 @@ def test_a_forgery_is_named_without_running_anything_again(forge: Callable[[Forg
     assert STATIC[forge].replace("runs/0?", place) in causes(result)
 
 
+@pytest.mark.parametrize("metric", ["spl", "restricted_time", "collision_count", "acceleration_max"])
+def test_each_metric_of_a_row_must_follow_from_its_record(metric: str, forger: Forger) -> None:
+    chosen = forger.key(forger.recorded()[0])
+
+    def changed(row: EpisodeRow) -> EpisodeRow:
+        metrics = {**row.metrics, metric: (row.metrics[metric] or 0.0) + 0.01}
+        return row.model_copy(update={"metrics": metrics}) if forger.key(row) == chosen else row
+
+    forger.change_rows(changed)
+    [problem] = audit_submission(forger.sign()).problems
+    where = f"{chosen[0]}, {chosen[1]}, seed {chosen[2]}"
+    assert problem.code == "submission-run"
+    assert problem.message == f"metrics {metric} of the row of {where} differ from the record"
+
+
 def test_rows_outside_of_the_sample_are_run_again(forger: Forger) -> None:
     recorded = {forger.key(row) for row in forger.recorded()}
     odd = [forger.key(row) for row in failed(forger.result.episodes) if forger.key(row) not in recorded]
@@ -250,10 +265,10 @@ def test_rows_outside_of_the_sample_are_run_again(forger: Forger) -> None:
     folder = forger.sign()
     assert audit_submission(folder).equal  # files alone cannot show it
     result = audit_submission(folder, replay="all", workers=1)
-    found = [one for one in result.problems if one.code == "submission-replay"]
-    assert len(found) == len(odd)
-    assert (found[0].given, found[0].allowed) == ("success", "collision")
-    assert "outcome and" in found[0].message
+    listed = [one for one in result.problems if one.code == "submission-replay"]
+    assert len(listed) == len(odd)
+    assert (listed[0].given, listed[0].allowed) == ("success", "collision")
+    assert "outcome and" in listed[0].message
 
 
 def test_a_record_of_another_policy_that_hides_it_is_run_again(forger: Forger) -> None:

@@ -190,6 +190,18 @@ def test_the_command(written: Path, tmp_path: Path) -> None:
     assert "belongs to a suite" in done.output
 
 
+@pytest.mark.parametrize(
+    ("suite", "policy", "scenario"), [("social_v2", "as-written", "head-on"), ("maps_v2", "astar", "forest-1-0.15")]
+)
+def test_perturbed_scenes_and_maps_are_drawn_again(suite: str, policy: str, scenario: str, workspace: Path) -> None:
+    words = ["benchmark", suite, "--policies", policy, "--scenario", scenario, "--seeds", "1"]
+    done = CliRunner().invoke(app, [*words, "--submission", "mine", "--workers", "1"])
+    assert done.exit_code == 0, done.output
+    result = audit_submission("mine", replay="all", workers=1)
+    assert result.equal, result.problems
+    assert result.replayed == result.sampled == result.episodes
+
+
 def test_policies_that_share_a_scene_are_recorded_as_they_were_compared(workspace: Path) -> None:
     words = ["benchmark", "mixed_v2", "--policies", "avocado", "--scenario", "one-rl_rvo", "--seeds", "1"]
     done = CliRunner().invoke(app, [*words, "--submission", "mine", "--workers", "1"])

@@ -145,8 +145,8 @@ def test_without_ray_the_message_has_the_command(monkeypatch: pytest.MonkeyPatch
 
 def test_another_version_is_refused(use: Callable[[Ray], Ray], monkeypatch: pytest.MonkeyPatch) -> None:
     use(Ray())
-    monkeypatch.setattr("irsim.benchmarks.cluster.version", lambda: "99.0")
-    with pytest.raises(ClusterError, match=r"and this is irsim 99\.0") as error:
+    monkeypatch.setattr("irsim.benchmarks.cluster.program", lambda: "99.0, engine a")
+    with pytest.raises(ClusterError, match=r"and this is irsim 99\.0, engine a") as error:
         irsim.benchmark("scene.yaml", "dash", 2, cluster="auto")
     assert error.value.code == "cluster-differs"
 

@@ -1,13 +1,14 @@
-"""Collects what is wrong with a submission, and what an audit of it has left open."""
+"""Collects what is wrong with a submission, and the comparisons that its audit has left out."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from irsim.common.text import clean
 from irsim.results.findings import Finding
 
-__all__ = ["Problems", "is_close"]
+__all__ = ["Problems", "flat", "is_close"]
 
 _MAX_LISTED = 50
 _AGAIN = "write the submission again: irsim benchmark SUITE --submission DIR"
@@ -19,7 +20,7 @@ class Problems:
     Attributes:
         listed: The first problems.
         count: Number of problems.
-        notes: What was not compared, in words.
+        notes: Comparisons that were left out, in words.
     """
 
     def __init__(self) -> None:
@@ -49,7 +50,7 @@ class Problems:
             )  # fmt: skip
 
     def note(self, text: str) -> None:
-        """Add something that was not compared, once."""
+        """Say once that a comparison was left out."""
         if (cleaned := clean(text, 400)) not in self.notes:
             self.notes.append(cleaned)
 
@@ -63,3 +64,11 @@ def is_close(given: Any, known: Any, tolerance: float) -> bool:
     if not all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in (given, known)):
         return type(given) is type(known) and bool(given == known)
     return bool(given == known or abs(given - known) <= tolerance * max(1.0, abs(given), abs(known)))
+
+
+def flat(data: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of a row; a value within a mapping has the names of both, joined."""
+    values = dict[str, Any]()
+    for key, value in data.items():
+        values |= {f"{key} {name}": one for name, one in value.items()} if isinstance(value, dict) else {key: value}
+    return values

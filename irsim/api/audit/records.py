@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from irsim.api.audit.measures import job_of, measured_differences
 from irsim.api.audit.problems import Problems, is_close
 from irsim.api.audit.suite import Claim
-from irsim.benchmarks.episode import Job, environment_of
+from irsim.benchmarks.episode import environment_of
 from irsim.benchmarks.plan import Plan, PlannedScenario
-from irsim.benchmarks.policies import job_keys
 from irsim.benchmarks.roles import shared_with
 from irsim.benchmarks.submission import MANIFEST, Manifest, SampledEpisode, sample_seed, sampled_episodes
 from irsim.diagnostics.errors import IrsimError
@@ -31,6 +31,7 @@ from irsim.runs.recorder import recording
 from irsim.runs.store import META, SCENARIO_FILE
 from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.limits import DEFAULT_LIMITS
+from irsim.simulation.engine import engine
 
 __all__ = ["check_records", "rows_of"]
 
@@ -76,16 +77,35 @@ def check_records(
         if audit.problems:
             continue
         sampled += 1
+        by = "" if manifest.engine == engine() else f" (it names engine {manifest.engine}, and this is {engine()})"
         for what, recorded, known in _origin(folder / one.folder, one, claim, manifest):
-            problems.add("submission-origin", one.folder, what, given=recorded, allowed=known)
+            problems.add("submission-origin", one.folder, what + by, given=recorded, allowed=known)
         for what, recorded, known in _differences(rows[key], audit, claim.plan.until == "first_collision"):
             message = f"{what} of the row of {', '.join(map(str, key))} is not the one of the recorded episode"
             problems.add("submission-run", one.folder, message, given=recorded, allowed=known)
+        _check_measures(folder, one, rows[key], claim, problems)
     return odd, sampled
 
 
+def _check_measures(folder: Path, one: SampledEpisode, row: EpisodeRow, claim: Claim, problems: Problems) -> None:
+    """Whether each value of a row follows from its record."""
+    scenario = next(scenario for scenario in claim.plan.scenarios if scenario.name == one.scenario)
+    policy = claim.policies.get(claim.plan.policies[one.policy])
+    shared = None if policy is None else shared_with(policy, claim.plan.parts().get(one.scenario, {}))
+    try:
+        job = job_of(scenario, claim.plan, shared)
+        odd = measured_differences(folder / one.folder, row, job, roles=policy is not None)
+    except (IrsimError, ValueError, ArithmeticError, LookupError, TypeError) as error:
+        problems.add("submission-run", one.folder, f"nothing can be measured in this record ({error})")
+        return
+    if odd:
+        more = f" and {len(odd) - 1} other values" if len(odd) > 1 else ""
+        what = f"{odd[0][0]}{more} of the row of {one.scenario}, {one.policy}, seed {one.seed} differ from the record"
+        problems.add("submission-run", one.folder, what, given=odd[0][1], allowed=odd[0][2])
+
+
 def _origin(place: Path, one: SampledEpisode, claim: Claim, manifest: Manifest) -> Iterator[tuple[str, Any, Any]]:
-    """What a record says from before its first step and the suite does not: message, recorded and drawn value."""
+    """The differences between the beginning of a record and the suite: message, recorded and drawn value."""
     scenario = next(scenario for scenario in claim.plan.scenarios if scenario.name == one.scenario)
     if text_of(place, SCENARIO_FILE) != scenario.text:
         yield f"it is not a record of the scenario {one.scenario}", None, None
@@ -103,17 +123,12 @@ def _origin(place: Path, one: SampledEpisode, claim: Claim, manifest: Manifest) 
 def _begin(scenario: PlannedScenario, one: SampledEpisode, plan: Plan, policy: Policy | None, target: Path) -> None:
     """Begin the record of an episode: everything that it holds before the first step."""
     shared = None if policy is None else shared_with(policy, plan.parts().get(scenario.name, {}))
-    keys = {"behavior": AS_WRITTEN} if shared is None else job_keys(shared)
-    job = Job(
-        text=scenario.text, path=scenario.document().path, steps=plan.steps, strict=plan.strict, imports=(),
-        limits=tuple(vars(DEFAULT_LIMITS).items()), perturb=tuple(plan.perturb), until=plan.until, **keys,
-    )  # fmt: skip
-    env = environment_of(job, one.seed)
+    env = environment_of(job_of(scenario, plan, shared), one.seed)
     horizon, source = horizon_of(env.simulation, plan.steps, DEFAULT_LIMITS)
-    is_behavior = isinstance(shared, BehaviorPolicy)
+    behavior = shared.text if isinstance(shared, BehaviorPolicy) else None
     setup = RunPlan(
-        None, horizon, source, strict=plan.strict, behavior=shared.text if is_behavior and shared else None,
-        policy=None if is_behavior else shared, perturb=plan.perturb, until=plan.until,
+        None, horizon, source, strict=plan.strict, behavior=None if behavior == AS_WRITTEN else behavior,
+        policy=None if behavior is not None else shared, perturb=plan.perturb, until=plan.until,
     ).record_options()  # fmt: skip
     if shared is None:
         setup |= {"policy": plan.policies[one.policy], "policy_digest": plan.digests.get(one.policy)}

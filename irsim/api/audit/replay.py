@@ -5,12 +5,11 @@ from __future__ import annotations
 import secrets
 import tempfile
 from collections import Counter
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
-from irsim.api.audit.problems import Problems, is_close
+from irsim.api.audit.problems import Problems, flat, is_close
 from irsim.api.audit.records import rows_of
 from irsim.api.audit.suite import Claim
 from irsim.api.benchmark_report import record_episode
@@ -37,7 +36,7 @@ _OTHER_ENGINE = 1e-6
 
 @dataclass
 class Replay:
-    """What was run again.
+    """The episodes that were run again.
 
     Attributes:
         salt: The text that has drawn the sample.
@@ -74,8 +73,8 @@ def replay_episodes(
 
     Args:
         folder: The submission.
-        claim: What it claims to have run.
-        ready: The same, ready to run.
+        claim: Its claim.
+        ready: The benchmark that it claims to have run, prepared here.
         result: Its result.
         manifest: Its manifest.
         problems: Gets what differs.
@@ -114,14 +113,14 @@ def _compare_row(
     key: tuple[str, str, int], given: EpisodeRow, known: EpisodeRow, manifest: Manifest, problems: Problems
 ) -> None:
     """Compare a row with the one of the same episode, run here: to the bit by the same engine."""
-    mine, theirs = _flat(known.model_dump()), _flat(given.model_dump())
+    mine, theirs = flat(known.model_dump()), flat(given.model_dump())
     tolerance = 0.0 if manifest.engine == engine() else _OTHER_ENGINE
     names = sorted({*mine, *theirs}, key=lambda name: (name not in ("outcome", "steps"), name))
     odd = [name for name in names if not is_close(theirs.get(name), mine.get(name), tolerance)]
     if odd:
         by = "" if manifest.engine == engine() else f" (it names engine {manifest.engine}, and this is {engine()})"
         more = f" and {len(odd) - 1} other values" if len(odd) > 1 else ""
-        what = f"{odd[0]}{more} of the row of {', '.join(map(str, key))} are not those of the episode run again{by}"
+        what = f"{odd[0]}{more} of the row of {', '.join(map(str, key))} differ from the episode that was run again{by}"
         problems.add("submission-replay", RESULTS, what, given=theirs.get(odd[0]), allowed=mine.get(odd[0]))
 
 
@@ -139,11 +138,3 @@ def _compare_trace(key: tuple[str, str, int], record: Path, claim: Claim, proble
     if not difference.same:
         where = f"{record.parent.name}/{record.name}"
         problems.add("submission-replay", where, f"the same episode, recorded again, differs: {difference.summary}")
-
-
-def _flat(data: Mapping[str, Any]) -> dict[str, Any]:
-    """The values of a row, those of its mappings under joined names."""
-    flat = dict[str, Any]()
-    for key, value in data.items():
-        flat |= {f"{key} {name}": one for name, one in value.items()} if isinstance(value, dict) else {key: value}
-    return flat

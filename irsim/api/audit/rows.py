@@ -25,14 +25,14 @@ from irsim.scenario.limits import MAX_STEPS
 __all__ = ["check_episodes", "check_head", "check_table", "prepared_claim"]
 
 _TOLERANCE = 1e-9
-_ROWS = ("rows", "pairs", "ranks", "episodes", "incidents", "notes", "reproduce", "engine")
+_ROWS = ("rows", "pairs", "ranks", "episodes", "incidents", "notes", "engine")
 """Keys of a result that follow from its episodes or are checked elsewhere."""
 _OF_POLICIES = ("behaviors", "information", "digests", "unequal", "random", "warnings")
 """Keys that depend on the policies, all of which must be here to compute them."""
 
 
 def prepared_claim(claim: Claim) -> Prepared:
-    """What the submission claims to have run, ready to be run here: all policies that are here."""
+    """The benchmark of a claim, prepared here with all policies that are here."""
     plan = claim.plan
     return prepare(
         {scenario.name: scenario.document() for scenario in plan.scenarios},
@@ -59,7 +59,7 @@ def check_head(claim: Claim, ready: Prepared, result: SuiteResult, problems: Pro
         return
     listed = list(claim.plan.policies.values())
     if result.behaviors != listed:
-        problems.add("submission-rows", RESULTS, "its behaviors are not those of the plan", given=result.behaviors)
+        problems.add("submission-rows", RESULTS, "it has other behaviors than the plan", given=result.behaviors)
     for name in claim.missing:
         text = claim.plan.policies[name]
         if result.information.get(text):
@@ -67,7 +67,7 @@ def check_head(claim: Claim, ready: Prepared, result: SuiteResult, problems: Pro
 
 
 def check_episodes(claim: Claim, ready: Prepared, result: SuiteResult, manifest: Manifest, problems: Problems) -> None:
-    """Whether each scenario, policy and seed has exactly one row, and seeds without room are those of the suite."""
+    """Whether each scenario, policy and seed has exactly one row, and only seeds without room are called so."""
     plan = claim.plan
     done = Counter((one.scenario, one.behavior, one.seed) for one in result.episodes)
     chances = dict(ready.head.random)

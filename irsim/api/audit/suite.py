@@ -1,4 +1,4 @@
-"""What a submission claims to have run, taken from this installation: its suite, its scenes and its policies."""
+"""The claim of a submission in terms of this installation: its suite, its scenes and its policies."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from irsim.benchmarks.suite import SUITES
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.common.hashing import file_digest
 from irsim.common.installed import version
-from irsim.diagnostics.errors import IrsimError
+from irsim.common.text import clean
+from irsim.diagnostics.errors import InputError, IrsimError
 from irsim.policies.catalog import file_of, has_inner_files, open_policy, with_file
 from irsim.policies.policy import Policy
 from irsim.scenario.behavior_override import behavior_text
@@ -26,13 +27,13 @@ __all__ = ["Claim", "claim_of"]
 
 @dataclass(frozen=True)
 class Claim:
-    """What a submission claims to have run, made of what is installed here and of none of its texts.
+    """The benchmark that a submission claims to have run, made of what is installed here and without its texts.
 
     Attributes:
         plan: Its plan, with the suite's own scenarios and the policies that it names.
-        policies: Text of a policy -> the policy, of those that can be run here.
+        policies: Text of each policy that can be run here -> the policy.
         missing: Name of a policy -> why it cannot be run here.
-        part: What part of the suite was run, in words; empty if all.
+        part: The part of the suite that was run, in words; empty if all of it was.
     """
 
     plan: Plan
@@ -59,6 +60,10 @@ def claim_of(
         problems: Gets what differs.
         suite: File of a suite that is not bundled.
         files: Name of a policy in the results -> its file, of policies that are files.
+
+    Raises:
+        InputError: A file is given for a policy that is not in the plan.
+        SuiteError: The file of the suite cannot be read.
     """
     assert plan.suite is not None
     name = plan.suite.suite
@@ -79,7 +84,7 @@ def claim_of(
         if mine is None or mine.model_copy(update={"folder": None}) != scenario.model_copy(update={"folder": None}):
             problems.add("submission-suite", PLAN, f"the suite has no such scenario {scenario.name}")
     if not plan.seeds or plan.seeds != sorted(set(plan.seeds)) or not 0 <= plan.seeds[0] <= plan.seeds[-1] < 2**64:
-        problems.add("submission-suite", PLAN, "its seeds are not in order, or one is there twice, or there are none")
+        problems.add("submission-suite", PLAN, "its seeds are not in order, or one is there twice, or all are missing")
     if not plan.scenarios or not plan.policies:
         problems.add("submission-suite", PLAN, "it has no scenario or no policy")
     for label, text in plan.policies.items():
@@ -89,6 +94,9 @@ def claim_of(
     if problems.count > before:
         return None
     again = suite_plan(name if suite is None else str(suite), policies=["dash"], seeds=plan.seeds, scenarios=names)
+    if (unknown := next((label for label in files or {} if label not in plan.policies), None)) is not None:
+        what = f"the submission has no policy {clean(unknown)}"
+        raise InputError(what, f"its policies are {', '.join(clean(label, 60) for label in plan.policies)}")
     opened, missing = _policies(plan, manifest, folder, files or {}, problems)
     digests = {label: plan.digests[label] for label in plan.policies if label in plan.digests}
     trusted = again.model_copy(
@@ -165,7 +173,7 @@ def _check_command(plan: Plan, problems: Problems) -> None:
 
 
 def _part(plan: Plan, own: Plan) -> str:
-    """What part of the suite was run, and whether its author has chosen the seeds."""
+    """The part of the suite that was run, and whether its author has chosen the seeds, in words."""
     parts = []
     if len(plan.scenarios) < len(own.scenarios):
         parts.append(f"{len(plan.scenarios)} of {len(own.scenarios)} scenarios")

@@ -51,7 +51,7 @@ AUDITS: dict[str, Code] = {
     "submission-rows": Code(
         "episodes do not fit the suite",
         "Each scenario, policy and seed must have exactly one row of a possible episode, seeds are without room only "
-        "where the scene has none, and what the result says of the suite must follow from it.",
+        "where the scene has no room, and the rest of the result must follow from the suite.",
     ),
     "submission-table": Code(
         "table does not follow from the rows",
