@@ -19,7 +19,7 @@ from pydantic_core import PydanticSerializationError
 from irsim.benchmarks.comparison import benchmark
 from irsim.benchmarks.log import in_order, with_episodes
 from irsim.benchmarks.plan import Plan, map_hashes
-from irsim.benchmarks.preparation import prepare
+from irsim.benchmarks.preparation import Prepared, prepare
 from irsim.benchmarks.timing import was_timed
 from irsim.common.files import TEMPORARY, code_of, write_atomically
 from irsim.common.installed import version
@@ -38,6 +38,7 @@ __all__ = [
     "default_folder",
     "last_folder",
     "measure_plan",
+    "prepare_plan",
     "read_plan",
     "result_of_episodes",
     "result_of_plan",
@@ -155,13 +156,18 @@ def result_of_episodes(plan: Plan, episodes: Iterable[EpisodeRow]) -> BenchmarkR
         RunError: An episode is missing.
         Others: as :func:`irsim.benchmark`.
     """
-    prepared = prepare(**_arguments(plan))
+    prepared = prepare_plan(plan)
     known = {(one.scenario, one.behavior, one.seed): one for one in episodes}
     wanted = [(scenario, behavior, task.seed) for scenario, behavior, task in prepared.plan]
     for scenario, behavior, seed in wanted:
         if (scenario, behavior, seed) not in known:
             raise unreadable(f"the episode of {scenario}, {behavior}, seed {seed} is missing")
     return result_of_plan(plan, with_episodes(prepared.head, [known[key] for key in wanted]))
+
+
+def prepare_plan(plan: Plan) -> Prepared:
+    """A plan before its first episode."""
+    return prepare(**_arguments(plan))
 
 
 def _arguments(plan: Plan) -> dict[str, Any]:

@@ -11,7 +11,8 @@ from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite import SUITES
 from irsim.results.benchmark import EpisodeRow, SuiteResult
 from tests.benchmarks.central_planner import scene, share, succeeds
-from tests.benchmarks.reference.kept import FOLDER, episode_of, is_whole, kept_lines, source_of
+from tests.benchmarks.reference import kept, write
+from tests.benchmarks.reference.kept import FOLDER, episode_of, is_kept, is_whole, kept_lines, source_of
 from tests.benchmarks.reference.leaderboard import (
     LEFT_OUT,
     LEFT_OUT_OF_SUITES,
@@ -23,6 +24,7 @@ from tests.benchmarks.reference.leaderboard import (
 from tests.benchmarks.reference.write import (
     PAGES,
     TABLES,
+    Table,
     changed_lines,
     changes,
     counted,
@@ -38,12 +40,13 @@ GRANTED = {
 """Version of a suite -> the beginning of what its page says is taken for granted."""
 
 
-WHOLE = [name for name, table in TABLES.items() if table.by_role or is_whole(kept_lines(name)[0])]
+WHOLE = [name for name, table in TABLES.items() if is_kept(name) and (table.by_role or is_whole(kept_lines(name)[0]))]
 """Tables whose pages are made from their lines."""
 
 
 def rerun(name: str, folder: Path, seeds: int, scenarios: tuple[str, ...] | None) -> None:
     """Run the first seeds of a table again, and compare each episode with the kept one."""
+    seeds = min(seeds, TABLES[name].seeds or seeds)
     result = run_plan(TABLES[name].plan(seeds=seeds, scenarios=scenarios), folder)
     assert isinstance(result, SuiteResult)
     lines = TABLES[name].lines(result)
@@ -56,6 +59,39 @@ def test_each_kept_file_is_of_a_table_and_has_all_its_episodes() -> None:
     for name, table in TABLES.items():
         plan = table.plan()
         assert len(kept_of(name)) == len(plan.scenarios) * len(plan.policies) * len(plan.seeds) == len(kept_lines(name))
+
+
+SMALL = """\
+suite: small
+version: 1
+title: Two robots swap places
+scenarios: [{name: pair, template: circle-swap, parameters: {robots: 2}}]
+seeds: {first: 0, count: 2}
+steps: 60
+policies: {orca: orca, dash: dash}
+"""
+
+
+def test_kept_episodes_are_used_again_unless_they_are_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "tests" / "benchmarks" / "reference"
+    folder.mkdir(parents=True)
+    (tmp_path / "small.yaml").write_text(SMALL, encoding="utf-8")
+    for module in (kept, write):
+        monkeypatch.setattr(module, "FOLDER", folder)
+    monkeypatch.setattr(write, "PAGES", tmp_path)
+
+    def keep(*policies: str, again: bool = False) -> list[tuple[str, str]]:
+        monkeypatch.setitem(TABLES, "small", Table(str(tmp_path / "small.yaml"), ("pair",), policies))
+        write.main("small", again=again)
+        return [(line["policy"], line["path_length"]) for line in kept_lines("small")]
+
+    first = keep("orca")
+    assert keep("orca", "dash")[: len(first)] == first
+    lines = kept_lines("small")
+    kept.write("small", list(lines[0]), [line | {"path_length": "1.0"} for line in lines])
+    with pytest.raises(SystemExit, match=r"pair, orca, seed 0: path_length .*, kept 1\.0"):
+        keep("orca", "dash")
+    assert keep("orca", "dash", again=True)[: len(first)] == first
 
 
 @pytest.mark.parametrize("name", TABLES)

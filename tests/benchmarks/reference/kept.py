@@ -41,7 +41,8 @@ _OUTCOMES = ("success", "collision", "timeout")
 _COUNTS = ("seed", "steps", "unreachable", "human_contacts")
 _TIMES = ("sim_time", "time_limit")
 _NAMES = ("left", "jumped")
-_FACTS = ("scenario", "policy", "seed", "outcome", *_COUNTS[1:], *_TIMES, *_NAMES, "lost")
+_ALWAYS = ("scenario", "policy", "seed", "outcome", "steps", *_TIMES)
+_FACTS = (*_ALWAYS, "unreachable", "human_contacts", *_NAMES, "lost")
 _EMPTY = ("", "0")
 """Cells of an episode without a value or an incident: a column of such cells is left out."""
 
@@ -49,7 +50,7 @@ _EMPTY = ("", "0")
 def columns_of(lines: Sequence[Line]) -> list[str]:
     """The columns of a file: facts, metrics that pages show, and the engine, as far as a line has a value."""
     every = (*_FACTS, *(key for key in KEYS if key in SHOWN and key not in _OUTCOMES), "engine")
-    return [key for key in every if any(line.get(key, "") not in _EMPTY for line in lines)]
+    return [key for key in every if key in _ALWAYS or any(line.get(key, "") not in _EMPTY for line in lines)]
 
 
 def cells_of(episode: EpisodeRow, policy: str, engine: str) -> dict[str, str]:

@@ -38,14 +38,12 @@ stand together, and the class of the best one is first: only they compete with e
 class can be one of information. Where policies change places between suites, choose by the scenes that are like yours.
 Where only `freeze` is listed, one robot drives, and the protocols are the same.
 """
+_WHERE = "Networks are in the suites of the scenes that they were trained for, on fewer seeds. No table has:"
 _OTHERS = """\
 One policy among others is in [mixed_v2](mixed_v2.md), recorded people are in [pedestrians](pedestrians.md): there
 `footprint_orca` comes last, 45 %, behind `dash` with 62 % and `orca` with 91 %.
 """
 LEFT_OUT = {
-    "sarl_multi_robot": "an episode takes it a second",
-    "sarl": "it leads one robot among people; `recipes` of the skill irsim-runner has its numbers",
-    "crowd": "it leads one robot among people; `recipes` of the skill irsim-runner has its numbers",
     "random": "it draws its controls",
     "replay": "it repeats a recording and does not decide",
     "mixed": "it is several policies ([mixed_v2](mixed_v2.md))",
@@ -57,7 +55,6 @@ LEFT_OUT = {
 }
 """Policy that no table has -> why."""
 LEFT_OUT_OF_SUITES = {
-    ("random_polygons_v2", "sarl_multi_robot"): "an episode takes it a second",
     ("random_polygons_v2", "sarl"): "it was trained to lead one robot among people",
 }
 """Suite, and a policy that it has a name for but no table of it has -> why."""
@@ -117,7 +114,7 @@ def _negated(one: Estimate) -> Estimate:
 def leaderboard() -> str:
     """The page, of all suites v2 whose episodes are kept by policy."""
     parts = [_ABOUT, *(part for name in _tables() for part in _section(name))]
-    return "\n".join([*parts, "## Not here", "", *_left_out(), "", _OTHERS])
+    return "\n".join([*parts, "## Not here", "", _WHERE, "", *_left_out(), "", _OTHERS])
 
 
 def _tables() -> list[str]:
@@ -128,8 +125,8 @@ def _section(name: str) -> Iterator[str]:
     """The table of one suite, and who leads."""
     table, episodes = TABLES[name], episodes_of(name, ("scenario", "policy", "seed", "outcome"))
     plan = table.plan()
-    with_networks = ", with networks" if name != table.suite else ""
-    yield f"## [{table.suite}{with_networks}]({name}.md)\n"
+    more = name.removeprefix(table.suite).replace("_", ", with ")
+    yield f"## [{table.suite}{more}]({name}.md)\n"
     yield f"{len(plan.seeds)} seeds from {plan.seeds[0]:,} on.\n"
     yield "| protocol | knows | policy | n | success | collision | timeout | behind |"
     yield "|---" * 8 + "|"

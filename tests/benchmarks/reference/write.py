@@ -20,7 +20,7 @@ from typing import Any
 
 from irsim.benchmarks.plan import Plan
 from irsim.benchmarks.report.markdown import markdown
-from irsim.benchmarks.stored import result_of_episodes, run_plan
+from irsim.benchmarks.stored import prepare_plan, result_of_episodes, run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.benchmark import EpisodeRow, SuiteResult
 from tests.benchmarks.reference.kept import (
@@ -117,12 +117,28 @@ TABLES = {
         ("robots-5",),
         seeds=10,
     ),
+    "random_polygons_v2_sarl": Table(
+        "random_polygons_v2",
+        ("robots-5",),
+        ("orca", "footprint_orca", "multi_robot_v2", "rl_rvo", "sarl_multi_robot"),
+        ("robots-5",),
+        seeds=5,
+    ),
     "circle_swap_v2": Table(
         "circle_swap_v2", ("diff-8",), ("orca", "rvo", "sfm", "dash", "avocado", "footprint_orca"), ("diff-8", "omni-8")
     ),
     "social_v2": Table("social_v2", ("head-on",), again=("head-on", "doorway")),
     "clutter_v2": Table("clutter_v2", ("posts-15",), again=("posts-15",)),
     "crowdnav_circle_v2": Table("crowdnav_circle_v2", ("circle-invisible-5",), again=("circle-invisible-5",)),
+    "crowdnav_circle_v2_networks": Table(
+        "crowdnav_circle_v2",
+        ("circle-invisible-5",),
+        ("orca", "orca-margin", "dash", "sarl", "crowd"),
+        ("circle-invisible-5",),
+        seeds=10,
+        protocols=("freeze",),
+    ),
+    "maps_v2": Table("maps_v2", ("forest-1-0.15",), again=("maze",), seeds=10, protocols=("freeze",)),
 }
 
 
@@ -228,8 +244,9 @@ def main(name: str, folder: str | None = None, *, again: bool = False) -> None:
     if not again:
         known = {key: line for key, line in kept_of(name).items() if table.by_role or is_whole(line)}
     plan = table.plan()
-    pairs = [(one.name, seed) for one in plan.scenarios for seed in plan.seeds]
-    missing = [policy for policy in plan.policies if any((one, policy, seed) not in known for one, seed in pairs)]
+    names = {text: policy for policy, text in plan.policies.items()}
+    wanted = [(scenario, names[text], task.seed) for scenario, text, task in prepare_plan(plan).plan]
+    missing = list(dict.fromkeys(policy for scenario, policy, seed in wanted if (scenario, policy, seed) not in known))
     ready = [policy for policy in plan.policies if policy not in missing]
     if ready:
         with tempfile.TemporaryDirectory() as place:
@@ -242,10 +259,7 @@ def main(name: str, folder: str | None = None, *, again: bool = False) -> None:
             result = run_plan(table.plan(policies=missing), Path(place), resume=folder is not None)
         assert isinstance(result, SuiteResult)
         known |= {(line["scenario"], line["policy"], int(line["seed"])): line for line in table.lines(result)}
-    keep(
-        name,
-        [known[one.name, policy, seed] for one in plan.scenarios for policy in plan.policies for seed in plan.seeds],
-    )
+    keep(name, [known[key] for key in wanted])
 
 
 def keep(name: str, lines: Sequence[Line]) -> None:
