@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from irsim.api.film_strip import draw_strip, moments_of
+from irsim.api.look import dress
 from irsim.api.run_scenario import run
 from irsim.benchmarks.episode import Job, environment_of
 from irsim.benchmarks.plan import Plan, PlannedScenario
@@ -93,6 +94,7 @@ def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: Bench
         limits=tuple(vars(DEFAULT_LIMITS).items()), perturb=tuple(plan.perturb), **job_keys(policy),
     )  # fmt: skip
     env = environment_of(job, one.seed)
+    dress(env)
     png = draw_strip(env, moments_of(max(one.steps, 1), _MOMENTS), size=_WIDTH_PX, may_be_lost=True)
     env.end(ending_time=0.0)
     label = policy_labels(result)[one.behavior]

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
 from irsim.diagnostics.errors import InputError
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["DEFAULT_STYLE", "STYLES", "THEME_NAMES", "Style", "ThemeName", "look_options", "with_look"]
+if TYPE_CHECKING:
+    from irsim.env import Env
+
+__all__ = ["DEFAULT_STYLE", "STYLES", "THEME_NAMES", "Style", "ThemeName", "dress", "look_options", "with_look"]
 
 Style = Literal["modern", "classic"]
 ThemeName = Literal["light", "dark"]
 STYLES: tuple[Style, ...] = ("modern", "classic")
 THEME_NAMES: tuple[ThemeName, ...] = ("light", "dark")
-DEFAULT_STYLE: Style = "classic"
+DEFAULT_STYLE: Style = "modern"
 """Style of what commands draw of a scenario that does not say its style."""
 
 
@@ -40,6 +43,11 @@ def with_look(scenario: ResolvedScenario, style: str | None = None, theme: str |
     chosen = {"style": style or plot.style or DEFAULT_STYLE, "theme": theme or plot.theme}
     plot = plot.model_copy(update=chosen)
     return replace(scenario, world=scenario.world.model_copy(update={"plot": plot}))
+
+
+def dress(env: Env, style: str | None = None, theme: str | None = None) -> None:
+    """Let an environment that nothing has been drawn of yet be drawn in a style and a theme; see :func:`with_look`."""
+    env.simulation.scenario = with_look(env.simulation.scenario, style, theme)
 
 
 def look_options(style: str | None, theme: str | None, printed: bool = False) -> list[str]:

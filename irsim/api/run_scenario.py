@@ -9,6 +9,7 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from irsim.api.look import DEFAULT_STYLE
 from irsim.api.read_input import opened_policy, read_scenario, rules_of_suite
 from irsim.api.render_scenario import animate
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
@@ -167,6 +168,7 @@ def run(
             if save is None and not show:
                 advance(env, horizon, progress, until=end, recorder=recorder)
             else:
+                env._env_plot.set_style(scenario.world.plot.style or DEFAULT_STYLE)
                 target, on = Path(save) if save is not None else None, end == "time_limit"
                 files = animate(env, horizon, target, progress, recorder, go_on=on)
         except (PolicyLostError, BridgeLostError) as error:

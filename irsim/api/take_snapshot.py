@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from irsim.api.film_strip import draw_strip, moments_of
-from irsim.api.look import look_options, with_look
+from irsim.api.look import dress, look_options, with_look
 from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, plot_keys, requested_plans
 from irsim.api.read_input import read_scenario
 from irsim.env import Env
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 __all__ = [
     "OVERLAYS",
     "Overlay",
+    "dress",
     "ended_before",
     "extent_of",
     "moved_view",
@@ -247,7 +248,7 @@ def snapshot_of_env(
         before = None if base is None else base.simulation
         more, plot = additions(env, overlays, ways), plot_keys(overlays)
         shown: dict[str, Any] = {"extra": more, "overrides": plot, "before": before, "changed": changed}
-        shown |= {"printed": printed, "notes": notes}
+        shown |= {"printed": printed, "notes": notes, "zones": overlays is None or "zones" in overlays}
         png = render_scene(env.simulation, size_px=size, region=region, **shown)
     x, y, right, top = scenario.world.bounds
     counts = counts_of(scenario)

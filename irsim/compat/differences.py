@@ -191,6 +191,7 @@ DIFFERENCES: dict[str, Difference] = {
         "of 50 robots that swap places over and over some touched, and under `sfm` nearly all",
     ),
     "D30": Difference("cells of arrays below 0 are free", "they are unknown", "maps of ROS have -1 for unknown"),
+    "D31": Difference("pictures have one style", "commands draw in the style `modern`", "it is easier to read"),
     "format-3": Difference(
         "`obstacle: {…}` joins group 0 and follows its group behavior",
         "the same, with a warning; the map is in no group",

@@ -77,6 +77,7 @@ def render_scene(
     before: Simulation | None = None,
     changed: Collection[str] = (),
     printed: bool = False,
+    zones: bool = True,
     notes: list[str] | None = None,
 ) -> bytes:
     """Draw the present state of one world as a PNG with few colours (about 20 kB).
@@ -95,6 +96,7 @@ def render_scene(
         before: Simulation of another scenario to compare with.
         changed: Names of the objects that differ from it, which are marked.
         printed: Whether the picture has the layout for print, in the style `modern`.
+        zones: Whether zones are drawn, in the style `modern`.
         notes: Takes what the picture leaves out, as sentences.
 
     Returns:
@@ -110,7 +112,7 @@ def render_scene(
 
         pixels, colors, left_out = draw_still(
             simulation, world, size_px=size_px, title=title, labels=labels, printed=printed, axes=True,
-            viewpoint=viewpoint, region=region, overrides=overrides or {}, extra=add,
+            viewpoint=viewpoint, region=region, overrides=overrides or {}, extra=add, zones=zones,
         )  # fmt: skip
         if notes is not None:
             notes += left_out

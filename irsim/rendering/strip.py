@@ -103,6 +103,7 @@ class Strip:
             side = self._size - _LINE_HEIGHT_PX
             self._theme, self._title = picture.theme, name_of(simulation)
             self._columns, self._tile = tiling(self._count, x1 - x0, y1 - y0, side)
+            self._tile = self._tile[0], self._tile[1] + _LINE_HEIGHT_PX
         layout = fit(picture.world_shown, max(self._tile), box=self._tile, strip=True)
         request = Request(overrides=self._overrides or {}, said=self._word, names=not self._tiles)
         pixels, colors = picture.draw(layout, request)

@@ -218,7 +218,7 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
 def _draw_run(job: dict[str, Any], progress: _Progress) -> tuple[ResolvedScenario, SnapshotResult]:
     """The scenario of a recorded run as it was simulated, and a picture of the run."""
     from irsim.api.film_strip import moments_of
-    from irsim.api.take_snapshot import snapshot_of_env
+    from irsim.api.take_snapshot import dress, snapshot_of_env
     from irsim.runs import open_run
     from irsim.runs.resimulation import check_reproduced, follow_record, has_modules, resimulate, step_of
 
@@ -227,6 +227,7 @@ def _draw_run(job: dict[str, Any], progress: _Progress) -> tuple[ResolvedScenari
     if arguments["strip"] is not None:
         moments = moments_of(step_of(run, arguments["steps"] or None), arguments["strip"])
     env = resimulate(run, arguments["steps"] if moments is None else 0, limits=_limits(job), progress=progress)
+    dress(env, arguments.get("style"))
     if arguments["draw"]:
         _load_elsewhere("irsim.rendering.snapshot")
     shown = {key: arguments[key] for key in ("size", "overlays", "region", "draw")}

@@ -11,6 +11,8 @@ from PIL import Image
 import irsim
 from irsim.api import snapshot
 from irsim.diagnostics.errors import IrsimError, OverLimitError
+from irsim.graphics.scene.theme import LIGHT
+from irsim.options.colors import rgb
 from irsim.scenario.limits import Limits
 
 SCENE = """\
@@ -58,8 +60,9 @@ def test_a_part_of_the_world() -> None:
     assert part.size[0] == pytest.approx(part.size[1], abs=60)
     assert part.extent == snapshot(text=SCENE, draw=False).extent, "the world stays the same"
     with Image.open(io.BytesIO(part.png)) as image:
-        black = sum(count for count, color in image.convert("RGB").getcolors() or [] if color == (0, 0, 0))
-        assert black > 2 * 50 * 25, "the crate is three times as large"
+        still = tuple(round(255 * level) for level in rgb(LIGHT.still))
+        crate = sum(count for count, color in image.convert("RGB").getcolors() or [] if color == still)
+        assert crate > 2 * 50 * 25, "the crate is three times as large"
 
 
 @pytest.mark.parametrize("region", [[0, 0, 1], [2, 0, 1, 1], [0, 0, 0, 1], [0, 0, float("inf"), 1], [float("nan")] * 4])

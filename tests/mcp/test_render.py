@@ -307,7 +307,7 @@ def magenta(data: str, x: float, y: float, reach_px: int = 4) -> bool:
             pixels.getpixel((column, row))
             for column in range(pixels.width)
             for row in range(pixels.height)
-            if abs(column - (54 + x / 12 * 522)) <= reach_px and abs(row - (380 - y / 8 * 348)) <= reach_px
+            if abs(column - (14 + x / 12 * 572)) <= reach_px and abs(row - (419 - y / 8 * 381)) <= reach_px
         ]
     return any(r > 150 and g < 100 and b > 150 for r, g, b in near)
 

@@ -47,7 +47,7 @@ def test_what_others_pass_through_has_no_mark() -> None:
 
 @pytest.mark.parametrize(("steps", "explained"), [(20, False), (30, True)])
 def test_a_strip_says_what_the_marks_mean(steps: int, explained: bool) -> None:
-    red = red_pixels(scene(), steps, strip=2)
+    red = red_pixels(scene(), steps, strip=2, style="classic")
     captions = red[len(red) // 2 :][:20]  # of the second of two tiles, one above the other
     assert captions.any() == explained
 

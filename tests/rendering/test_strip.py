@@ -109,5 +109,5 @@ def test_the_first_tile_alone_names_obstacles(monkeypatch: pytest.MonkeyPatch) -
 
     original = strip._simplify
     monkeypatch.setattr(strip, "_simplify", simplify)
-    snapshot(text=SCENE, strip=2, steps=20, size=600)
+    snapshot(text=SCENE, strip=2, steps=20, size=600, style="classic")
     assert named == [["crate", "rover"], ["rover"]]

@@ -96,6 +96,7 @@ def draw_still(
     labels: bool,
     printed: bool,
     axes: bool,
+    zones: bool,
     overrides: Mapping[str, Any],
     **what: Any,
 ) -> tuple[Pixels, Colors, list[str]]:
@@ -109,6 +110,7 @@ def draw_still(
         labels: Whether names, paths and goals are drawn where the scenario does not say so.
         printed: Whether it has the layout for print.
         axes: Whether coordinates are at the edge.
+        zones: Whether zones are drawn.
         overrides: Object plot keys.
         what: Further arguments of :class:`StillPicture`.
 
@@ -120,6 +122,6 @@ def draw_still(
     picture = StillPicture(simulation, world, overrides=keys, **what)
     ratio = PRINT_RATIO if printed else 1.0
     layout = fit(picture.world_shown, size_px / ratio, printed=printed, ratio=ratio)
-    request = Request(overrides=keys, axes=axes, title=title, plans=picture.plans)
+    request = Request(overrides=keys, axes=axes, title=title, zones=zones, plans=picture.plans)
     pixels, colors = picture.draw(layout, request)
     return pixels, colors, picture.notes

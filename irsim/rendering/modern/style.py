@@ -138,7 +138,7 @@ class ModernStyle:
         self.notes = _notes(crowd, dropped)
         marks += self._page
         velocities = any(sensing.measures_velocity(beams, by_number[beams.object]) for beams in scene.beams)
-        parts = [self._heading(scene, things, crowd, len(own), layout, request)]
+        parts = [self._heading(scene, things, crowd, sum(e.kind == "collision" for e in own), layout, request)]
         if layout.sizes.kind != "strip":
             parts.append(frame.foot(layout, theme))
             parts.append(heading.legend_parts(layout, theme, self.sizes, beads=beads, velocities=velocities))

@@ -82,9 +82,13 @@ class Thing:
         return min(self.body.length, self.body.width) / 2
 
     def wants(self, key: str, default: bool = True) -> bool:
-        """Whether a plot key, such as ``show_goal``, is on: the caller says so, else the scenario, else the style."""
-        if key in self.overrides and self.overrides[key] is not None:
-            return bool(self.overrides[key])
+        """Whether a plot key, such as ``show_goal``, is on.
+
+        The caller switches off anything, and on what the style draws of this object; else the scenario decides.
+        """
+        given = self.overrides.get(key)
+        if given is not None and (default or not given):
+            return bool(given)
         plot = self.view.record.plot
         return bool(getattr(plot, key)) if key in plot.model_fields_set else default
 

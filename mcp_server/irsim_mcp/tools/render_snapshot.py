@@ -26,10 +26,10 @@ __all__ = ["PLACE", "table_lines", "tool"]
 PLACE = 3
 
 _DESCRIPTION = """
-    Check a scenario and draw it at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading;
-    omni: where it moves), goals (pale), names, lidar beams, paths.
+    Check a scenario and draw it at one `step`, or at several (`strip`), as a PNG: bodies, darts (heading; omni:
+    where it moves), people, goals (rings), names, areas that lidars see, paths, contacts (red stars).
     At step 0 the text has what validate_scenario finds, and a table of all objects: drive, footprint, pose, goal,
-    limits, ranges over seeds, narrowest passages (r0 is 'robot_0', G-r0 its goal). An invalid scenario gives only
+    limits, ranges over seeds, narrowest passages (r0 is 'robot_0'). An invalid scenario gives only
     errors. Next: edit and look again, or run_episode.
 """
 _OVERLAYS = (
@@ -70,6 +70,7 @@ def tool(services: Services) -> StrictTool:
             Field(min_length=4, max_length=4, description="Zoom in: [x_min, y_min, x_max, y_max] in m."),
         ] = None,
         base: Annotated[str | None, Field(description="Scenario before an edit, to mark changes at step 0.")] = None,
+        style: Literal["modern", "classic"] | None = None,
         return_image: Annotated[bool, Field(description="false: text only.")] = True,
     ) -> list[TextContent | ImageContent]:
         what: dict[str, Any] = {
@@ -81,6 +82,7 @@ def tool(services: Services) -> StrictTool:
             "overlays": overlays,
             "region": region,
             "draw": return_image,
+            "style": style,
             **services.base(base),
         }
         if base is not None and (step != 0 or strip is not None or run_id is not None):
@@ -187,6 +189,7 @@ def _line(
     if scene["explored"] is not None:
         seen = f"{100 * scene['explored']:.0f} % of the area of the world seen"
         parts.append(f"fog: {seen}, the rest is grey, with goals drawn above it")
+    parts += scene["left_out"]
     if scene["view"] is not None:
         region = ", ".join(f"{value:g}" for value in (left, low, right, top))
         parts.append(f"{view_message(scene['view'])}: region=[{region}] shows the world")
