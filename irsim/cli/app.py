@@ -13,6 +13,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from irsim.cli.guard import INTERRUPTED, again, handle_errors, say_interrupted
+from irsim.cli.names import finished
 from irsim.cli.sentences import SENTENCES
 from irsim.common.installed import version
 
@@ -44,6 +45,15 @@ COMMANDS = {
     "skills": "skills:skills_app",
 }
 """Name of a command or of a group of commands -> module and name of what does it."""
+PANELS = {
+    "Start": ("demo", "templates", "new"),
+    "Scenarios": ("validate", "diff", "render", "describe", "schema"),
+    "Runs": ("run", "inspect", "diff-runs", "audit", "replay", "export"),
+    "Comparisons": ("benchmark", "suites", "policies"),
+    "Learning": ("train", "export-policy", "convert"),
+    "Other programs": ("map", "bridge", "skills"),
+}
+"""Groups of commands in the help."""
 
 
 def loaded(name: str) -> Any:
@@ -58,9 +68,11 @@ class Commands(TyperGroup):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._listing = False
-        for name in COMMANDS:
-            sentence = SENTENCES[name]
-            self.commands[name] = TyperCommand(name, callback=lambda: None, help=sentence, rich_markup_mode="rich")
+        for panel, names in PANELS.items():
+            for name in names:
+                self.commands[name] = TyperCommand(
+                    name, callback=lambda: None, help=SENTENCES[name], rich_markup_mode="rich", rich_help_panel=panel
+                )
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a command; in a list of commands only its name and sentence."""
@@ -73,7 +85,7 @@ class Commands(TyperGroup):
             target = one
         command = typer.main.get_command(target)
         command.name = cmd_name
-        return command
+        return finished(command, cmd_name)
 
     def invoke(self, ctx: Any) -> Any:
         """Run a command; Ctrl-C while it is imported ends it as later."""
@@ -86,12 +98,18 @@ class Commands(TyperGroup):
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write the help."""
         self._listing = True
-        super().format_help(ctx, formatter)
+        try:
+            super().format_help(ctx, formatter)
+        finally:
+            self._listing = False
 
     def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
         """Return completions of the name of a command."""
         self._listing = True
-        return super().shell_complete(ctx, incomplete)
+        try:
+            return super().shell_complete(ctx, incomplete)
+        finally:
+            self._listing = False
 
 
 app = typer.Typer(

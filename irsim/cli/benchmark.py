@@ -113,6 +113,7 @@ def benchmark(
         Path | None,
         typer.Option(
             "-o",
+            "--out",
             "--output",
             metavar="DIR",
             show_default=False,

@@ -18,7 +18,7 @@ from irsim.benchmarks.suite import is_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.findings import limits_for
 from irsim.cli.guard import again, going_on
-from irsim.cli.output import console, progress
+from irsim.cli.output import console, progress, show_written
 from irsim.diagnostics.errors import InputError
 from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
 
@@ -109,11 +109,12 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
             )  # fmt: skip
     out = console(stderr=True)
     for written in reports:
-        out.print(f"episodes, result and report: {written.page}", soft_wrap=True)
+        show_written(written.page, "the report; episodes and result are beside it", stderr=True)
         for note in written.notes:
             out.print(f"note: {note}", soft_wrap=True)
     for manifest in manifests:
-        out.print(f"submission: {manifest}; check it: irsim audit {manifest.parent}", soft_wrap=True)
+        show_written(manifest, "the submission", stderr=True)
+        out.print(f"check it: irsim audit {manifest.parent}", soft_wrap=True)
     return result
 
 

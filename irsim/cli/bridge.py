@@ -21,7 +21,7 @@ from irsim.cli.bridge_likeness import compare_pedestrians, pedestrians_suite
 from irsim.cli.bridge_pedestrians import import_pedestrians
 from irsim.cli.guard import FAILED, handle_errors
 from irsim.cli.options import Json
-from irsim.cli.output import console
+from irsim.cli.output import console, show_written
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import InputError
@@ -90,8 +90,8 @@ def import_bag(
     ] = None,
     radius: Annotated[float, typer.Option(help="Radius of the robot, in metres.")] = 0.2,
     step_time: Annotated[float, typer.Option(help="Step time of the scenario, in seconds.")] = 0.1,
-    start: Annotated[float, typer.Option("--from", help="Start of the window of time, in seconds.")] = 0.0,
-    end: Annotated[float | None, typer.Option("--to", help="End of the window of time, in seconds.")] = None,
+    start: Annotated[float, typer.Option("--start", help="Start of the window of time, in seconds.")] = 0.0,
+    end: Annotated[float | None, typer.Option("--end", help="End of the window of time, in seconds.")] = None,
     range_max: Annotated[
         float | None,
         typer.Option(
@@ -109,10 +109,10 @@ def import_bag(
     if json_output:
         typer.echo(json.dumps(asdict(converted)))
         return
-    what = f": {converted.poses} poses, {converted.duration:.1f} s" + (
+    what = f"{converted.poses} poses, {converted.duration:.1f} s" + (
         f", a map of {converted.scans} scans" if converted.map else ""
     )
-    console().print(Text.assemble("wrote ", (converted.file, "bold"), what), soft_wrap=True)
+    show_written(converted.file, what)
     for note in converted.notes:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)
     console().print(Text.assemble("run it: ", (f"irsim run {converted.file}", "cyan")), soft_wrap=True)
@@ -139,7 +139,7 @@ def export_scene(
     """Write the start of a scenario as a stage of OpenUSD. For a whole run, see `irsim export --to usd`."""
     written = write(scenario, out, seed=seed, overwrite=force)
     size = written.stat().st_size / 1e3
-    console().print(Text.assemble("wrote ", (str(written), "bold"), f" ({size:.0f} kB)"), soft_wrap=True)
+    show_written(written, f"{size:.0f} kB")
 
 
 bridge_app.command("doctor")(handle_errors(doctor))

@@ -18,7 +18,7 @@ from irsim.bridges.pedestrians.comparison import compare_pedestrians as compare
 from irsim.bridges.pedestrians.imitation import GOALS, RADIUS
 from irsim.bridges.pedestrians.published import RECORDINGS, write_pedestrians_suite
 from irsim.cli.options import Json
-from irsim.cli.output import console, progress
+from irsim.cli.output import console, progress, show_written
 from irsim.scenario.behavior_override import split_behaviors
 
 __all__ = ["compare_pedestrians", "pedestrians_suite"]
@@ -88,7 +88,7 @@ def pedestrians_suite(
         typer.echo(json.dumps(asdict(made)))
         return
     windows = ", ".join(f"{count} of {name} ({made.lengths[name]:g} s)" for name, count in made.windows.items())
-    console().print(Text.assemble("wrote ", (made.file, "bold"), f": windows: {windows}"), soft_wrap=True)
+    show_written(made.file, f"windows: {windows}")
     if made.other:
         what = (
             f"{' and '.join(made.other)}: not the files of the published results (SHA-256), so its numbers are others"

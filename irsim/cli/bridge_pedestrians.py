@@ -17,7 +17,7 @@ from irsim.bridges.pedestrians.scenario import Layout
 from irsim.bridges.pedestrians.suite import Episodes
 from irsim.bridges.pedestrians.tracks import FORMATS, Window
 from irsim.cli.options import Json
-from irsim.cli.output import console
+from irsim.cli.output import console, show_written
 from irsim.common.text import plural
 from irsim.diagnostics.errors import InputError
 
@@ -61,8 +61,8 @@ def import_pedestrians(
         float | None,
         typer.Option(help="Frames per second.", show_default="25 for .vsp, else such that rows are 0.4 s apart"),
     ] = None,
-    start: Annotated[float, typer.Option("--from", help="Start of the window of time, in seconds.")] = 0.0,
-    end: Annotated[float | None, typer.Option("--to", help="End of the window of time, in seconds.")] = None,
+    start: Annotated[float, typer.Option("--start", help="Start of the window of time, in seconds.")] = 0.0,
+    end: Annotated[float | None, typer.Option("--end", help="End of the window of time, in seconds.")] = None,
     crop: Annotated[str | None, typer.Option(metavar="X0,Y0,X1,Y1", help="Keep this area, in metres.")] = None,
     homography: Annotated[
         Path | None, typer.Option(metavar="FILE", help="3 x 3 matrix from pixels to metres, for .vsp.")
@@ -81,7 +81,7 @@ def import_pedestrians(
         str | None, typer.Option(metavar="X,Y", help="Goal of the robot.", show_default="right edge")
     ] = None,
     behavior: Annotated[str | None, typer.Option(help="Behavior of the robot.", show_default="orca")] = None,
-    robot: Annotated[bool, typer.Option("--robot/--no-robot", help="Add a robot.")] = True,
+    robot: Annotated[bool, typer.Option("--add-robot/--no-robot", help="Add a robot.")] = True,
     step_time: Annotated[
         float | None, typer.Option(help="Step time of the scenario, in seconds.", show_default="0.1")
     ] = None,
@@ -147,11 +147,11 @@ def import_pedestrians(
     if converted.file is not None:
         where = "" if converted.into is None else f" in {Path(converted.into).name}"
         people = plural(converted.pedestrians, "pedestrian")
-        what = f": {people}{where}, {converted.rows} recorded places, {converted.duration:g} s"
-        console().print(Text.assemble("wrote ", (converted.file, "bold"), what), soft_wrap=True)
+        what = f"{people}{where}, {converted.rows} recorded places, {converted.duration:g} s"
+        show_written(converted.file, what)
     if converted.suite is not None:
-        what = f": {len(converted.windows)} windows of {converted.length:g} s, 10 seeds each"
-        console().print(Text.assemble("wrote ", (converted.suite, "bold"), what), soft_wrap=True)
+        what = f"{len(converted.windows)} windows of {converted.length:g} s, 10 seeds each"
+        show_written(converted.suite, what)
     for note in converted.notes:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)
     if converted.file is not None:

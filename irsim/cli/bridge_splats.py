@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.text import Text
 
 from irsim.bridges.export.cameras import PoseOptions
 from irsim.bridges.export.registry import chosen_options
 from irsim.bridges.splats.page import write_page
 from irsim.bridges.splats.preview import PreviewOptions, write_preview
 from irsim.cli.options import Json
-from irsim.cli.output import console, progress
+from irsim.cli.output import console, progress, show_written
 from irsim.policies.converters.convert import parse_options
 
 __all__ = ["page", "preview"]
@@ -47,7 +46,7 @@ def preview(
         Path, typer.Option("-o", "--out", metavar="FILE", help="Picture (.png, .jpg, .webp) or film (.gif, .mp4 …).")
     ],
     run: RunName = "last",
-    view: Annotated[Eye, typer.Option(help="Where the eye is: on the robot, behind it, or above.")] = Eye.behind,
+    view: Annotated[Eye, typer.Option("--eye", help="Whether it is on the robot, behind it, or above.")] = Eye.behind,
     robot: Annotated[
         str | None, typer.Option(metavar="NAME", help="Default: the first one.", show_default=False)
     ] = None,
@@ -68,7 +67,7 @@ def preview(
         result = write_preview(scene, run, out, options=chosen, robot=robot, step=step, progress=report)
     first, last = result.steps
     what = "1 picture" if result.frames == 1 else f"{result.frames} pictures"
-    _show(result.as_dict(), f" ({what} of {result.splats:,} splats, steps {first} to {last})", json_output)
+    _show(result.as_dict(), f"{what} of {result.splats:,} splats, steps {first} to {last}", json_output)
 
 
 def page(
@@ -88,13 +87,13 @@ def page(
     """
     chosen = chosen_options(PoseOptions, parse_options(options or []), "a page")
     result = write_page(scene, run, out, options=chosen, max_splats=max_splats)
-    _show(result.as_dict(), f" ({result.bytes / 1e6:.1f} MB: {result.splats:,} splats)", json_output)
+    _show(result.as_dict(), f"{result.bytes / 1e6:.1f} MB: {result.splats:,} splats", json_output)
 
 
 def _show(result: dict[str, Any], facts: str, json_output: bool) -> None:
     if json_output:
         typer.echo(json.dumps(result, indent=2))
         return
-    console().print(Text.assemble("wrote ", (result["file"], "bold"), facts), soft_wrap=True)
+    show_written(result["file"], facts)
     for note in result["notes"]:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from irsim.cli.output import show_written
 from irsim.policies.converters.convert import convert_policy, parse_options
 
 __all__ = ["convert", "export_policy"]
@@ -38,7 +39,8 @@ def convert(
     """
     network = convert_policy(kind, file, out, parse_options(options or []))
     parameters = sum(array.size for array in network.arrays.values())
-    typer.echo(f"wrote {out} with {parameters:,} parameters; try it: irsim run SCENARIO --policy {out}")
+    show_written(out, f"{parameters:,} parameters")
+    typer.echo(f"try it: irsim run SCENARIO --policy {out}")
 
 
 def export_policy(
@@ -60,4 +62,5 @@ def export_policy(
 
     file = export(training, out, license=license, description=description)
     card, curve = file.with_suffix(".md"), file.with_suffix(".png")
-    typer.echo(f"wrote {file}, {card} and {curve}; try it: irsim run SCENARIO --policy {file}")
+    show_written([str(one) for one in (file, card, curve)])
+    typer.echo(f"try it: irsim run SCENARIO --policy {file}")

@@ -44,7 +44,7 @@ def diff(
         ),
     ] = None,
     run: Annotated[
-        bool, typer.Option("--run", help="Also simulate the first steps of both with one seed, and compare them.")
+        bool, typer.Option("--simulate", help="Also simulate the first steps of both with one seed, and compare them.")
     ] = False,
     json_output: Json = False,
 ) -> None:

@@ -6,14 +6,13 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.text import Text
 
 from irsim.bridges.export.episode import CHOICES
 from irsim.bridges.export.export import export_run
 from irsim.bridges.export.registry import format_names
 from irsim.cli.guard import again, going_on
 from irsim.cli.options import Json
-from irsim.cli.output import console, print_json, progress
+from irsim.cli.output import console, print_json, progress, show_written
 from irsim.common.text import plural
 from irsim.policies.converters.convert import parse_options
 
@@ -101,8 +100,6 @@ def export(
     size = f"{result.bytes / 1e6:.2f} MB" if result.bytes >= 1e5 else f"{result.bytes / 1e3:.0f} kB"
     count = f"{len(result.run_ids)} runs, " if len(result.run_ids) > 1 else ""
     who = plural(len(result.objects), "object")
-    console().print(
-        Text.assemble("wrote ", (result.file, "bold"), f" ({size}: {count}{who}, {result.steps} steps)"), soft_wrap=True
-    )
+    show_written(result.file, f"{size}: {count}{who}, {result.steps} steps")
     for note in result.notes:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 from irsim.api import import_modules
 from irsim.bundled.templates.fill import parse_path
 from irsim.cli.output import has_colors
+from irsim.common.text import plural
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import CodedError
 from irsim.diagnostics.report import format_diagnostics
@@ -18,7 +20,15 @@ from irsim.scenario.limits import Limits
 from irsim.scenario.locate import locate
 from irsim.scenario.yaml.document import text_of
 
-__all__ = ["UserImportError", "import_user_modules", "limits_for", "not_found", "print_diagnostics", "print_findings"]
+__all__ = [
+    "UserImportError",
+    "import_user_modules",
+    "limits_for",
+    "not_found",
+    "print_diagnostics",
+    "print_findings",
+    "print_warnings",
+]
 
 
 class UserImportError(CodedError, ImportError):
@@ -66,6 +76,19 @@ def print_findings(findings: Sequence[Finding], file: str, text: str | None = No
         for finding in findings
     ]
     print_diagnostics(diagnostics, _text_of(file) if text is None else text, stderr=stderr)
+
+
+def print_warnings(findings: Sequence[Finding], file: str) -> None:
+    """Print the warnings about a scenario that was used, and how many hints ``irsim validate`` explains.
+
+    Args:
+        findings: Findings of a result.
+        file: File of the scenario.
+    """
+    print_findings([one for one in findings if one.severity != "hint"], file, stderr=True)
+    if hints := dict.fromkeys(one.code for one in findings if one.severity == "hint"):
+        what = f"{plural(len(hints), 'hint')} ({', '.join(hints)}): irsim validate {shlex.quote(file)} explains"
+        print(what, file=sys.stderr)
 
 
 def import_user_modules(names: Sequence[str] | None) -> None:

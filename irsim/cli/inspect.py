@@ -49,13 +49,15 @@ def inspect(
     robot: Annotated[
         str | None,
         typer.Option(
+            "--objects",
+            metavar="WHICH",
             help="Show only this object, or all, robots, obstacles, a tag, or several names separated by commas.",
             show_default=False,
         ),
     ] = None,
-    from_step: Annotated[int, typer.Option("--from", min=0, metavar="STEP", help="First step.")] = 0,
+    from_step: Annotated[int, typer.Option("--first", min=0, metavar="STEP", help="First step.")] = 0,
     to_step: Annotated[
-        int | None, typer.Option("--to", min=0, metavar="STEP", help="Last step.", show_default=False)
+        int | None, typer.Option("--last", min=0, metavar="STEP", help="Last step.", show_default=False)
     ] = None,
     every: Annotated[
         int | None,

@@ -18,7 +18,7 @@ from irsim.bridges.maps.ros_server import export_map
 from irsim.cli.findings import import_user_modules
 from irsim.cli.guard import again, going_on, handle_errors
 from irsim.cli.options import File, Imports, Json, Seed
-from irsim.cli.output import console, print_json
+from irsim.cli.output import console, print_json, show_written
 from irsim.diagnostics.errors import InputError
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def _show(written: MapFiles, json_output: bool) -> None:
         typer.echo(json.dumps(written.as_dict(), indent=2))
         return
     size = f"{written.columns} x {written.rows} cells of {written.resolution:g} m, {written.occupied:,} occupied"
-    console().print(Text.assemble("wrote ", (" and ".join(written.files), "bold"), f": {size}"), soft_wrap=True)
+    show_written(written.files, size)
 
 
 class Unknown(str, Enum):
@@ -227,7 +227,7 @@ def import_(
         ),
     ] = None,
     robot: Annotated[
-        bool, typer.Option("--robot", help="Add a robot that drives from one end of the map to the other.")
+        bool, typer.Option("--add-robot", help="Add a robot that drives from one end of the map to the other.")
     ] = False,
     obstacles: Annotated[
         bool,
@@ -296,7 +296,7 @@ def _show_import(result: MapImportResult, out: Path | None, robot: bool) -> None
     if result.obstacles:
         cells = f"{result.obstacles:,} obstacle{'s' * (result.obstacles != 1)}; as a map {cells}"
     if result.files:
-        line("wrote ", (", ".join(result.files), "bold"), f": {cells}")
+        show_written(result.files, cells)
     else:
         line(cells)
     for one in result.levels:

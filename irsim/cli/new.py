@@ -13,7 +13,7 @@ from irsim import api
 from irsim.bundled import templates
 from irsim.cli.findings import print_findings
 from irsim.cli.guard import INVALID
-from irsim.cli.output import console
+from irsim.cli.output import console, show_written
 from irsim.common.files import write_new
 from irsim.scenario.yaml.modeline import with_modeline
 
@@ -48,5 +48,6 @@ def new(
     target = out or Path(f"{name}.yaml")
     write_new(target, with_modeline(text, target), overwrite=force)
     shown = console()
-    shown.print(Text.assemble("wrote ", (str(target), "bold"), f": {template.purpose} {template.prospect(given)}"))
+    show_written(target)
+    shown.print(f"{template.purpose} {template.prospect(given)}")
     shown.print(Text.assemble("next: ", (shlex.join(["irsim", "run", str(target)]), "cyan")), soft_wrap=True)

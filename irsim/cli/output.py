@@ -6,8 +6,9 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from irsim.common.text import escape_marks
@@ -26,6 +27,7 @@ __all__ = [
     "print_error",
     "print_json",
     "progress",
+    "show_written",
     "silence_stdout",
 ]
 
@@ -102,6 +104,23 @@ def print_json(model: BaseModel, *, line: bool = False) -> None:
     """
     indent = 2 if is_terminal() and not line else None
     sys.stdout.write(model.model_dump_json(indent=indent) + "\n")
+
+
+def show_written(files: str | Path | Sequence[str], about: str = "", *, stderr: bool = False) -> None:
+    """Print the paths of written files as all commands do, in one line that is never broken: ``wrote hall.gif (…)``.
+
+    Args:
+        files: One file or folder, or several; names below the current directory are shortened.
+        about: What is in them.
+        stderr: Print to standard error instead of standard output.
+    """
+    from rich.text import Text
+
+    names = [str(files)] if isinstance(files, (str, os.PathLike)) else list(files)
+    here = os.getcwd() + os.sep
+    shown = ", ".join(name.removeprefix(here) for name in names)
+    out = console(stderr=stderr)
+    out.print(Text.assemble("wrote ", (shown, "bold"), f" ({about})" if about else ""), soft_wrap=True)
 
 
 def silence_stdout() -> None:

@@ -18,6 +18,9 @@ from irsim.policies.description import describe_policy, list_policies
 
 __all__ = ["policies"]
 
+_WIDE = 110
+"""Width of a terminal from which on all columns fit [characters]."""
+
 
 def policies(
     name: Annotated[
@@ -37,12 +40,14 @@ def policies(
     out = console()
     table = Table(box=None, pad_edge=False, header_style="dim", show_header=name is None)
     if name is None:
-        for heading in ("policy", "kind", "returns", "knows", "drives", "what it does"):
-            table.add_column(heading)
+        narrow = out.is_terminal and out.width < _WIDE
+        for heading in ("policy", *(() if narrow else ("kind", "returns")), "knows", "drives", "what it does"):
+            table.add_column(heading, overflow="fold", no_wrap=heading == "policy")
         for one in listed:
             knows = one.knows or ", ".join(one.needs) or "-"
-            row = (one.kind, one.output, clean(knows, 100), clean(", ".join(one.drives), 100), clean(one.about, 200))
-            table.add_row(Text(clean(one.name), "bold cyan"), *row)
+            kinds = () if narrow else (one.kind, one.output)
+            row = (clean(knows, 100), clean(", ".join(one.drives), 100), clean(one.about, 200))
+            table.add_row(Text(clean(one.name), "bold cyan"), *kinds, *row)
         out.print(table)
         out.print("a file is a policy, too: irsim policies model.npz; irsim run SCENARIO --policy NAME uses one")
         return

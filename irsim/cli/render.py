@@ -11,9 +11,9 @@ from rich.text import Text
 from irsim import api
 from irsim.api.overlays import OVERLAYS
 from irsim.api.render_run import render_run
-from irsim.cli.findings import import_user_modules, limits_for, print_findings
+from irsim.cli.findings import import_user_modules, limits_for, print_warnings
 from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Strict
-from irsim.cli.output import console, print_json, progress
+from irsim.cli.output import console, print_json, progress, show_written
 from irsim.common.files import check_suffix
 from irsim.diagnostics.errors import InputError
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, PICTURE_FORMATS
@@ -67,6 +67,9 @@ def render(
     ] = None,
     theme: Annotated[str | None, typer.Option(metavar="THEME", help="Colours: light or dark (modern).")] = None,
     printed: Annotated[bool, typer.Option("--print", help="For print: 8 cm wide, 300 dpi, on white (modern).")] = False,
+    verbose: Annotated[
+        bool, typer.Option("-v", "--verbose", help="Also print a table of the objects: drives, footprints, places.")
+    ] = False,
     json_output: Json = False,
     strict: Strict = False,
     imports: Imports = None,
@@ -77,7 +80,7 @@ def render(
     The suffix of the file decides which. A run is drawn as it was recorded, with what a policy or a bridge did in it;
     a picture without `--steps` shows its end.
 
-    Also print a table of its objects: drives, footprints, places, and the ranges of what is random.
+    `--verbose` and `--json` add a table of its objects: drives, footprints, places, and the ranges of what is random.
     """
     import_user_modules(imports)
     with progress("drawing") as report:
@@ -98,20 +101,18 @@ def render(
     if json_output:
         print_json(result)
         return
-    print_findings(result.warnings, file, stderr=True)
+    print_warnings(result.warnings, file)
     shown = console()
     frames = f", {result.frames} frames" if result.frames > 1 else ""
     width, height = result.size
     for written in result.files:
-        shown.print(
-            Text.assemble("wrote ", (written, "bold"), f" ({width} x {height} px{frames}, step {result.steps})")
-        )
+        show_written(written, f"{width} x {height} px{frames}, step {result.steps}")
     if result.ended is not None:
         shown.print(f"step {result.steps} is beyond the end of the episode, which is step {result.ended}")
     if result.view is not None:
         left, right, low, top = result.extent
         whole = f"--region {left:g} {low:g} {right:g} {top:g} shows the world"
         shown.print(f"note: the picture {view_message(result.view)}: {whole}", style="yellow", soft_wrap=True)
-    for line in scene_lines(result.table.model_dump(), result.labels, result.seed):
+    for line in [] if not verbose else scene_lines(result.table.model_dump(), result.labels, result.seed):
         shown.print(Text(line), soft_wrap=True)
     shown.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)

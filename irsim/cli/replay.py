@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.text import Text
 
 from irsim.cli.options import Json
-from irsim.cli.output import console, print_json, progress
+from irsim.cli.output import console, print_json, progress, show_written
 from irsim.runs.files import RunError
 from irsim.runs.replay.export import replay as write
 
@@ -46,9 +45,6 @@ def replay(
         return
     thinned = f", every {result.every} steps" if result.every > 1 else ""
     size = f"{result.bytes / 1e6:.2f} MB" if result.bytes >= 1e5 else f"{result.bytes / 1e3:.0f} kB"
-    console().print(
-        Text.assemble("wrote ", (result.file, "bold"), f" ({size}, steps 0 to {result.last_step}{thinned})"),
-        soft_wrap=True,
-    )
+    show_written(result.file, f"{size}, steps 0 to {result.last_step}{thinned}")
     for note in result.notes:
         console().print(f"note: {note}", style="yellow")

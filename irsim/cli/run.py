@@ -12,10 +12,10 @@ from rich.table import Table
 from rich.text import Text
 
 from irsim import api
-from irsim.cli.findings import import_user_modules, limits_for, print_findings
+from irsim.cli.findings import import_user_modules, limits_for, print_warnings
 from irsim.cli.guard import FAILED, ended_in_order
 from irsim.cli.options import File, Imports, Json, MaxObjects, Perturb, Seed, Steps, Strict, Until
-from irsim.cli.output import OUTCOME_COLORS, console, print_error, print_json, progress
+from irsim.cli.output import OUTCOME_COLORS, console, print_error, print_json, progress, show_written
 from irsim.cli.run_seeds import run_all
 from irsim.common.files import check_suffix
 from irsim.common.text import clean, seconds
@@ -149,7 +149,7 @@ def run(
     if json_output:
         print_json(result)
     else:
-        print_findings(result.warnings, file, stderr=True)
+        print_warnings(result.warnings, file)
         show_result(result, console())
     if result.lost is not None:
         print_error(result.lost_code or "", f"{result.lost}; the run ended after {seconds(result.sim_time)}")
@@ -183,7 +183,7 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     horizon = f"{seconds(result.time_limit)} ({limit[result.time_limit_from]})"
     out.print(f"{result.steps} steps, {seconds(result.sim_time)} of simulated time; time limit {horizon}")
     for written in result.files:
-        out.print(Text.assemble("wrote ", (written, "bold")), soft_wrap=True)
+        show_written(written)
     if result.run_id is not None:
         folder = Path(next(iter(result.artifacts.values()))).parent
         name = result.run_id if folder.parent.parent.name == ".irsim" else shlex.quote(str(folder))

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from irsim.api.run_seeds import run_seeds
-from irsim.cli.findings import print_findings
+from irsim.cli.findings import print_warnings
 from irsim.cli.guard import FAILED, ended_in_order
 from irsim.cli.output import OUTCOME_COLORS, console, print_json, progress
 from irsim.common.text import clean, seconds
@@ -44,7 +44,7 @@ def run_all(
     if json_output:
         print_json(result)
     else:
-        print_findings(result.warnings, file, stderr=True)
+        print_warnings(result.warnings, file)
         _show(result)
     if require_success and (result.failed or result.crowded):
         raise typer.Exit(FAILED)

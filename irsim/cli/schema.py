@@ -9,6 +9,7 @@ import typer
 
 from irsim.benchmarks.suite import SUITES
 from irsim.cli.guard import FAILED
+from irsim.cli.output import show_written
 from irsim.common import data_files as resources
 from irsim.common.files import write_atomically
 from irsim.diagnostics.errors import ScenarioError
@@ -81,7 +82,10 @@ def is_current(target: Path, text: str, check: bool, command: str) -> bool:
         return False
     if not check:
         write_atomically(target, text)
-    typer.echo(f"{target} is up to date" if check else f"wrote {target}")
+    if check:
+        typer.echo(f"{target} is up to date")
+    else:
+        show_written(target)
     return True
 
 

@@ -11,8 +11,9 @@ import typer
 
 from irsim.cli.findings import print_findings
 from irsim.cli.guard import INVALID, again, going_on
-from irsim.cli.output import console
+from irsim.cli.output import console, show_written
 from irsim.common.extras import require
+from irsim.learning.tasks.files import open_task
 from irsim.learning.training.run_folder import SETTINGS_FILE, RunFolder
 from irsim.learning.training.settings import read_settings
 from irsim.validation.file_reports import task_report
@@ -54,7 +55,7 @@ def train(
     steps: Annotated[
         float | None,
         typer.Option(
-            "--steps",
+            "--decisions",
             min=1,
             help="Decisions of all learners, at most, such as 5e6; with --resume a finished training goes on to them. "
             "Default: 1e6; 450,000 after the demonstrations with sarl.",
@@ -95,12 +96,14 @@ def train(
     wanted = None if steps is None else int(steps)
     given = {"algo": algo, "steps": wanted, "seed": seed, "stop_at": stop_at}
     if resume and (options or any(given[name] is not None for name in ("algo", "seed", "stop_at"))):
-        typer.echo("a resumed training keeps its settings, except --steps: leave out the others", err=True)
+        typer.echo("a resumed training keeps its settings, except --decisions: leave out the others", err=True)
         raise typer.Exit(INVALID)
     settings = RunFolder(out).settings() if resume else read_settings(given, options or [])
     if settings.algo == "sarl" and workers > 1:
         typer.echo("--workers is for --algo ppo, and this training uses sarl: leave it out", err=True)
         raise typer.Exit(INVALID)
+    if task is not None:
+        open_task(str(task))  # a wrong name is said before what training needs
     require("learn", *(("torch",) if settings.algo == "sarl" else _LIBRARIES))
     _let_threads_sleep()
     run: Any
@@ -122,7 +125,8 @@ def train(
             task or out / "task.yaml", out, settings, resume=resume, steps=wanted if resume else None,
             max_time=max_time, threads=threads, on_round=show, **more,
         )  # fmt: skip
-    out_console.print(f"best model: {best}; irsim export-policy {out} policy.npz makes a file that needs no torch")
+    show_written(best, "the best model")
+    out_console.print(f"next: irsim export-policy {out} policy.npz makes a file that needs no torch", soft_wrap=True)
 
 
 def _go_on(out: Path, threads: int, workers: int) -> str:

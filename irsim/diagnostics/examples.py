@@ -93,7 +93,6 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "map-not-found": ("world: {obstacle_map: cvae.png}", "world: {obstacle_map: cave.png}\nrobot: null"),
     "map-empty": ("world: {obstacle_map: {name: perlin, resolution: 0.1, fill: 0, seed: 1}}", "world: {obstacle_map: {name: perlin, resolution: 0.1, fill: 0.1, seed: 1}}\nrobot: null"),
     "too-large": ("robot: {state: [1.0e+9, 1, 0]}", "robot: {state: [1, 1, 0]}"),
-    "placement-impossible": ("robot: {number: 500, distribution: {name: random}}", "robot: {number: 10, distribution: {name: random}}"),
     "placement-tight": ("robot: {number: 48, distribution: {name: random, min_distance: 1.14}}", "robot: {number: 48, distribution: {name: random, min_distance: 0.5}}"),
     "placement-crowded": ("robot: {number: 62, distribution: {name: random, min_distance: 1.2}}", "robot: {number: 20, distribution: {name: random, min_distance: 1.2}}"),
     "heading-not-reached": ("robot: {goal: [9, 9, 1.57], arrive_mode: state, kinematics: {name: omni}}", "robot: {goal: [9, 9, 1.57], arrive_mode: state, kinematics: {name: omni_angular}}"),

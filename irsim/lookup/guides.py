@@ -147,11 +147,11 @@ GUIDES: dict[str, Guide] = {
         "`irsim map import FILE -o map.yaml` makes an occupancy grid and a scenario of a mesh (.glb, .gltf, .obj, "
         ".ply, .stl), a navigation mesh of Habitat (.navmesh), a stage of OpenUSD (.usd; it is a format of exports, "
         "too), roads of OpenDRIVE (.xodr), Gaussian splats (.ply) or a map of the ROS map server (.yaml); --level "
-        "picks a storey, --robot adds a robot, and map.bridge.json beside it leads back to the scene. `irsim bridge "
-        "preview` and `irsim bridge page` show a run among splats. `irsim bridge import-pedestrians` makes scenarios "
-        "and suites of recorded people (ETH, UCY, TrajNet), `irsim bridge import-bag` of scans and odometry in a bag "
-        "of ROS. Pages: bridges/ of the skill irsim-runner.",
-        "irsim map import flat.glb -o flat.yaml --robot && irsim run flat.yaml",
+        "picks a storey, --add-robot adds a robot, and map.bridge.json beside it leads back to the scene. `irsim "
+        "bridge preview` and `irsim bridge page` show a run among splats. `irsim bridge import-pedestrians` makes "
+        "scenarios and suites of recorded people (ETH, UCY, TrajNet), `irsim bridge import-bag` of scans and odometry "
+        "in a bag of ROS. Pages: bridges/ of the skill irsim-runner.",
+        "irsim map import flat.glb -o flat.yaml --add-robot && irsim run flat.yaml",
         (
             *("import", "map import", "mesh", "glb", "obj", "navmesh", "habitat", "hm3d", "usd", "opendrive", "ply"),
             *("splats", "gaussian splats", "ros map", "import-pedestrians", "pedestrian data", "eth", "ucy", "trajnet"),
@@ -269,9 +269,9 @@ GUIDES: dict[str, Guide] = {
             *("elevation", "ceiling", "bridge", "jump", "climb"),
             *("delay", "delayed", "start_time", "start time", "stagger", "staggered", "spawn", "appear", "disappear"),
             *("schedule", "timer", "weather", "rain", "wind", "snow", "traffic light"),
-            *("traffic lights", "priority", "right of way", "battery", "camera", "underwater"),
+            *("traffic lights", "priority", "right of way", "battery", "underwater"),
             *("ampel", "semáforo", "红绿灯"),
-            *("cameras", "depth camera", "rgb camera", "imu", "gps", "boat", "ship", "submarine"),
+            *("boat", "ship", "submarine", "3 d", "three dimensions", "third dimension"),
         ),
     ),
     "things": Guide(

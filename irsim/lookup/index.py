@@ -12,7 +12,7 @@ from irsim.diagnostics.examples import EXAMPLES
 from irsim.lookup.answer import Answer, Key, first_sentence
 from irsim.lookup.metrics import METRIC_TOPICS
 from irsim.lookup.schema_walk import mappings, yaml_text
-from irsim.lookup.things import ALL_GUIDES
+from irsim.lookup.things import ALL_GUIDES, NO
 from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
 
@@ -82,6 +82,8 @@ def guide_answer(name: str, see: list[str]) -> Answer:
         see: Related topics.
     """
     guide = ALL_GUIDES[name]
+    if guide.text.startswith(NO) and "limits" not in see:
+        see = [*see, "limits"]
     title = f"{name}: {guide.title}"
     return Answer(topic=name, kind="guide", title=title, text=guide.text, example=guide.example, see=see)
 

@@ -22,7 +22,7 @@ EVERYDAY: dict[str, str] = {
     ", laserscanner, abstandssensor, láser, escáner láser, 激光雷达, 激光",
     "robot.sensors.fmcw_lidar2d": "lidar, fmcw, fmcw lidar, doppler, radar, velocity lidar, radial velocity",
     "robot.sensors.contact2d": "bumper, touch sensor, contact sensor, tactile",
-    "robot.sensors": "sensor, camera, depth camera, imu, gps",
+    "robot.sensors": "sensor",
     "robot.sensors.fmcw_lidar2d.motion_compensate": "ego motion, own motion",
     "robot.sensors.lidar2d.noise": "lidar noise, laser noise, sensor noise, measurement noise, noise",
     "robot.kinematics.diff.noise": "motion noise, actuator noise, odometry noise, noise",

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from irsim.lookup.guides import GUIDES, Guide
 
-__all__ = ["ALL_GUIDES", "THINGS"]
+__all__ = ["ALL_GUIDES", "NO", "THINGS"]
 
-_NO = "irsim has no"
+NO = "irsim has no"
+"""How the text of a thing begins that is not simulated."""
 
 THINGS: dict[str, Guide] = {
     "agv": Guide(
@@ -26,7 +27,7 @@ THINGS: dict[str, Guide] = {
     "forklift": Guide(
         "kinematics acker and a rectangle; it lifts nothing",
         "Take kinematics acker with a rectangle of about 2.4 x 1.2 m, wheelbase 1.5 m and 2 to 3 m/s; a pallet jack: "
-        f"1.8 x 0.7 m, walking pace. {_NO} forks, loads or steered rear wheels: a pallet is an obstacle with shape "
+        f"1.8 x 0.7 m, walking pace. {NO} forks, loads or steered rear wheels: a pallet is an obstacle with shape "
         "rectangle (1.2 x 0.8 m), and it stays where it is. Pushing: world.collision_mode: contact. Template: "
         "warehouse.",
         "robot: {kinematics: {name: acker}, shape: {name: rectangle, length: 2.4, width: 1.2, wheelbase: 1.5},\n"
@@ -39,7 +40,7 @@ THINGS: dict[str, Guide] = {
     ),
     "tug": Guide(
         "kinematics acker, without trailers",
-        f"{_NO} couplings: a trailer does not follow its tractor. Take kinematics acker for the tractor alone, or one "
+        f"{NO} couplings: a trailer does not follow its tractor. Take kinematics acker for the tractor alone, or one "
         "long rectangle that covers both and turns wider than the real thing; several vehicles one behind the other "
         "are robots with the same waypoints and start_time in turn. Say so in the report.",
         "robot: {kinematics: {name: acker}, shape: {name: rectangle, length: 1.8, width: 1.0, wheelbase: 1.2}}",
@@ -89,13 +90,13 @@ THINGS: dict[str, Guide] = {
         "a vehicle that goes back and forth, or a bus",
         "Back and forth between two places: waypoints with behavior {name: dash, loop: true}; among others the same "
         "keys of orca or follow. As a bus: kinematics acker, a rectangle of 5 x 2 m, behavior follow. "
-        f"{_NO} stops of a given length: split the ride into runs, or use start_time for the first one.",
+        f"{NO} stops of a given length: split the ride into runs, or use start_time for the first one.",
         "behavior: {name: dash, loop: true}",
         ("shuttle bus", "people mover", "ferry", "pendelbus", "lanzadera", "摆渡车", "班车"),
     ),
     "legged": Guide(
         "omni_angular with the outline of the body; no legs",
-        f"{_NO} legs, gaits or balance. Seen from above a quadruped is kinematics omni_angular (it steps sideways and "
+        f"{NO} legs, gaits or balance. Seen from above a quadruped is kinematics omni_angular (it steps sideways and "
         "turns on the spot) with a rectangle of about 1.1 x 0.5 m and up to 1.6 m/s; a humanoid is a circle of radius "
         "0.3 m, up to 1.2 m/s. Steps, slopes and rough ground are not simulated: say so.",
         "robot: {kinematics: {name: omni_angular}, shape: {name: rectangle, length: 1.1, width: 0.5},\n"
@@ -109,7 +110,7 @@ THINGS: dict[str, Guide] = {
     ),
     "drone": Guide(
         "only one that keeps its height",
-        f"{_NO} heights: nothing passes over or under another thing. A drone that keeps its height is kinematics omni "
+        f"{NO} heights: nothing passes over or under another thing. A drone that keeps its height is kinematics omni "
         "(omni_angular if its heading matters) with a circle of about 0.25 m radius and 2 to 5 m/s. Take-off, landing "
         "and flying over shelves cannot be shown: say so, then offer this. More: limits.",
         "robot: {kinematics: {name: omni}, shape: {name: circle, radius: 0.25}, state: [2, 2], goal: [8, 5],\n"
@@ -121,7 +122,7 @@ THINGS: dict[str, Guide] = {
     ),
     "arm": Guide(
         "no arms and grippers; the base alone",
-        f"{_NO} joints, arms, grippers, picking or placing. The base of a mobile manipulator can drive to the place "
+        f"{NO} joints, arms, grippers, picking or placing. The base of a mobile manipulator can drive to the place "
         "where it would reach (arrive_mode: state for its heading); an arm that stands out is a part of its shape "
         "compound and does not move by itself. Pushing exists: world.collision_mode: contact. Arms need another "
         "simulator (irsim export writes mjcf, usd and sdf).",
@@ -132,9 +133,51 @@ THINGS: dict[str, Guide] = {
             *("brazo robótico", "pinza", "机械臂", "抓取"),
         ),
     ),
+    "odometry": Guide(
+        "poses are exact; noise makes the motion differ from the command",
+        f"{NO} odometry, wheel encoders or localization: scripts and policies see the true pose (robot.state). Nearest "
+        "is noise of the kinematics, so that the motion differs from the command, and a lidar for a localization of "
+        "your own; a bridge to ROS publishes the true pose as /odom.",
+        "robot: {kinematics: {name: diff, noise: true}, state: [2, 2, 0], goal: [8, 5],\n"
+        "        sensors: [{name: lidar2d, noise: true}]}",
+        (
+            *("odometer", "wheel encoder", "wheel encoders", "encoder", "encoders", "dead reckoning", "localization"),
+            *("localisation", "slam", "amcl", "odometrie", "odometría", "里程计", "定位"),
+        ),
+    ),
+    "camera": Guide(
+        "no images; a field of view, or a lidar",
+        f"{NO} cameras and images: sensors are planar lidars. Nearest: fov of an object says whom it sees, with "
+        "fov_occlusion: true not through walls, and lidar2d measures ranges. For pictures from the robot, irsim bridge "
+        "preview renders a recorded run among splats, and irsim export --to colmap writes its camera poses.",
+        "robot: {fov: 1.5, fov_radius: 5, fov_occlusion: true, sensors: [{name: lidar2d, angle_range: 1.5}]}",
+        (
+            *("cameras", "depth camera", "rgb camera", "rgbd", "stereo camera", "webcam", "image", "images", "vision"),
+            *("object detection", "point cloud", "kamera", "tiefenkamera", "cámara", "相机", "摄像头", "深度相机"),
+        ),
+    ),
+    "imu": Guide(
+        "no IMU, GPS or compass; the true motion is known",
+        f"{NO} inertial sensors, satellite navigation or compass: robot.state and robot.velocity are exact. Nearest: "
+        "add noise to them in your program, from env.rng, which the seed repeats.",
+        None,
+        (
+            *("gps", "gnss", "compass", "magnetometer", "accelerometer", "gyroscope", "gyro", "inertial sensor"),
+            *(
+                "barometer",
+                "altimeter",
+                "kompass",
+                "beschleunigungssensor",
+                "acelerómetro",
+                "brújula",
+                "惯性",
+                "陀螺仪",
+            ),
+        ),
+    ),
     "elevator": Guide(
         "there is one flat floor",
-        f"{_NO} floors above one another and no doors that open. Show the part on one floor: the cabin is a small room "
+        f"{NO} floors above one another and no doors that open. Show the part on one floor: the cabin is a small room "
         "(a linestring with a gap of 0.9 to 1.1 m as its door), people come out by start_time, and the robot has its "
         "goal in the cabin; or one file for each floor. Waiting before the ride: start_time of the robot.",
         "obstacle: {shape: {name: linestring, vertices: [[0, 0], [0, 2], [2, 2], [2, 0], [1.5, 0]]}, state: [6, 4, 0]}",
@@ -145,7 +188,7 @@ THINGS: dict[str, Guide] = {
     ),
     "stairs": Guide(
         "no stairs, ramps or slopes, as the world is flat",
-        f"{_NO} heights. A place that a robot must keep off is an obstacle, or a zone that the behavior follow avoids "
+        f"{NO} heights. A place that a robot must keep off is an obstacle, or a zone that the behavior follow avoids "
         "(see keep-out); a ramp that it may use is a corridor like any other, and a lower vel_max holds for the whole "
         "run. Refuse what depends on the climb, with this reason. More: limits.",
         "world: {zones: [{name: stairs, rectangle: [4, 2, 6, 4]}]}\n"
@@ -158,7 +201,7 @@ THINGS: dict[str, Guide] = {
     ),
     "floor": Guide(
         "carpet, tiles and ice change nothing",
-        f"{_NO} surfaces: no grip, slip or speed that depends on the place. A carpet can be drawn (an obstacle with "
+        f"{NO} surfaces: no grip, slip or speed that depends on the place. A carpet can be drawn (an obstacle with "
         "unobstructed: true, which nothing touches) or watched (world.zones). Slip of one robot everywhere: noise of "
         "its kinematics; a slower one: vel_max.",
         "obstacle: {name: carpet, shape: {name: rectangle, length: 3, width: 2}, state: [5, 3, 0], unobstructed: true}",
@@ -247,7 +290,7 @@ THINGS: dict[str, Guide] = {
     ),
     "conveyor": Guide(
         "no conveyors, doors that open, cranes or turntables",
-        f"{_NO} machines that move other things or switch. A thing that moves by itself is an obstacle with kinematics "
+        f"{NO} machines that move other things or switch. A thing that moves by itself is an obstacle with kinematics "
         "omni and a route (waypoints, dash); a door that slides to and fro has loop: true and knows no signal; a door "
         "that is open is a gap.",
         "obstacle: {name: sliding_door, kinematics: {name: omni}, shape: {name: rectangle, length: 1, width: 0.1},\n"
@@ -263,7 +306,7 @@ THINGS: dict[str, Guide] = {
         "a goal with a heading; no batteries",
         "The place is the robot's goal with arrive_mode: state (its heading counts) and a small goal_threshold; the "
         "housing of the station is a rectangle behind it, at least half a robot's length away from the goal. "
-        f"{_NO} batteries and no rest at a place.",
+        f"{NO} batteries and no rest at a place.",
         "robot: {state: [2, 2, 0], goal: [8, 5, 1.5708], arrive_mode: state, goal_threshold: 0.05, "
         "kinematics: {name: diff}}",
         (

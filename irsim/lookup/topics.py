@@ -83,7 +83,9 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         "metrics": all_metrics,
         "policies": policies_answer,
         "policy": policies_answer,
+        "suite": suites_answer,
         "suites": suites_answer,
+        "template": templates_answer,
         "templates": templates_answer,
     }
     if name in lists:

@@ -64,6 +64,7 @@ _WORKSPACE_FOLDER = ".irsim"
 _MAX_STEM_LENGTH = 24
 """Number of characters of a scenario's name in the id of a run."""
 ID = re.compile(r"[a-z0-9][a-z0-9-]{0,40}-[0-9a-f]{6}")
+_LAST = re.compile(r"last(?:-([0-9]{1,6}))?")
 _NO_SLUG = re.compile(r"[^a-z0-9]+")
 _MAX_NAMED = 5
 """Number of recent runs that a message names."""
@@ -172,7 +173,8 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
     """Find the folder of a run.
 
     Args:
-        name: Id of the run, ``last`` for the run started last, or (only without a workspace) its folder.
+        name: Id of the run, ``last`` for the run started last, ``last-1`` for the one before, or (only without a
+            workspace) its folder.
         workspace: Folder whose ``.irsim/runs`` holds the run; default: the current directory.
 
     Raises:
@@ -181,10 +183,10 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
     if workspace is None and (Path(name) / META).is_file():
         return Path(name)
     runs = runs_folder(workspace)
-    if str(name) == "last":
-        folders = run_folders(runs)
-        if folders:
-            return folders[0]
+    if back := _LAST.fullmatch(str(name)):
+        folders, before = run_folders(runs), int(back[1] or 0)
+        if before < len(folders):
+            return folders[before]
     folder = runs / str(name)
     if ID.fullmatch(str(name)) and not folder.is_symlink() and plain_file(folder, META) is not None:
         mark_used(folder)
@@ -196,8 +198,8 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
 
 
 def is_run(name: str | Path) -> bool:
-    """Whether a name names a run here: ``last``, an id, or a folder; the name of a file is not."""
-    if str(name) == "last" or (Path(name) / META).is_file():
+    """Whether a name names a run here: ``last``, ``last-1``, an id, or a folder; the name of a file is not."""
+    if _LAST.fullmatch(str(name)) or (Path(name) / META).is_file():
         return not Path(name).is_file()
     return bool(ID.fullmatch(str(name))) and (runs_folder() / str(name) / META).is_file()
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from irsim.common.arguments import as_given
 from irsim.diagnostics.errors import InputError, ScenarioNotFoundError
 
-__all__ = ["BUNDLED", "default_name", "image_places", "locate", "why_outside"]
+__all__ = ["BUNDLED", "default_name", "image_places", "locate", "near_files", "why_outside"]
 
 _MAX_SUGGESTIONS = 3
 """Similar file names that the message lists."""
@@ -74,14 +74,21 @@ def _message(wanted: str, searched: list[str]) -> str:
         lines.append(
             f"'{template}' is a template: `irsim new {template}` writes {template}.yaml, which can then be used."
         )
-    near = _near(wanted, searched)
+    near = near_files(wanted, searched)
     if near:
         lines.append("Did you mean " + " or ".join(f"'{path}'" for path in near) + "?")
+    elif template is None:
+        lines.append("`irsim templates` lists scenarios to start from, and `irsim new NAME` writes one.")
     return "\n".join(lines)
 
 
-def _near(wanted: str, places: list[str]) -> list[str]:
-    """Files in the searched places with a similar name, nearest first."""
+def near_files(wanted: str, places: Iterable[str]) -> list[str]:
+    """YAML files in some folders with a similar name, nearest first.
+
+    Args:
+        wanted: Name of the file that there is not.
+        places: The folders.
+    """
     base = os.path.basename(wanted).lower()
     paths: dict[str, str] = {}
     for place in places:

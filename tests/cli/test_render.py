@@ -98,7 +98,7 @@ robot: {name: scout, state: [1, 1, 0], goal: [4, 1], kinematics: {name: diff}, s
 def test_render_prints_what_the_file_becomes_and_validate_does_when_asked(irsim: Run, tmp_path: Path) -> None:
     (tmp_path / "places.yaml").write_text(PLACES)
     line = "- diff, circle r 0.2, dash, vel_max [1, 1]: 'scout' at (1.00, 1.00) heading 0.00 goal (4.00, 1.00)"
-    assert line in irsim("render", "places.yaml", "-o", "places.png").stdout
+    assert line in irsim("render", "places.yaml", "-v", "-o", "places.png").stdout
     data = parsed(irsim("render", "places.yaml", "-o", "places.png", "--json"))
     assert data["table"]["rows"][0]["names"] == ["scout"]
     assert line not in irsim("validate", "places.yaml").stdout

@@ -239,7 +239,7 @@ def test_a_scene_does_not_depend_on_the_scenes_before_it(make: Make) -> None:
 
 
 def test_a_goal_distance_that_nothing_can_keep_is_an_error() -> None:
-    assert [(s, c) for s, c, _ in problems("{name: random, goal_distance: 20}")] == [("error", "placement-impossible")]
+    assert [(s, c) for s, c, _ in problems("{name: random, goal_distance: 20}")] == [("error", "placement-crowded")]
     assert {(s, c) for s, c, _ in problems("{name: random, goal_distance: 12}")} == {("warning", "placement-tight")}
     assert problems("{name: random, goal_distance: 9}") == []
 
@@ -272,9 +272,9 @@ def test_mistakes_in_the_bounds_of_goals_are_reported() -> None:
     ((severity, code, fix),) = problems(f"{{name: random, {far}, goal_low: [8, 5, 0], goal_high: [9, 3, 0]}}")
     assert (severity, code, "raise goal_high" in fix) == ("error", "range-order", True)
     ((_, code, _),) = problems(f"{{name: random, {far}, goal_low: [8, 5, 0], goal_high: [8, 5.5, 0]}}")
-    assert code == "placement-impossible", "two goals a metre apart do not fit"
+    assert code == "placement-crowded", "two goals a metre apart do not fit"
     ((_, code, _),) = problems(f"{{name: random, {far}, goal_low: [3, 4, 0], goal_high: [4, 6, 0], goal_distance: 7}}")
-    assert code == "placement-impossible"
+    assert code == "placement-crowded"
     text = STREAM.replace("goal_high: [19, 7, 3]", "goal_high: [29, 7, 3]")
     (finding,) = [f for f in irsim.validate(text=text).findings if f.code == "outside-world"]
     assert "random goals have x from 14 to 29" in finding.message

@@ -161,7 +161,7 @@ def import_pedestrians(
     tracks, left_out = make_tracks(recording, places, rate, window)
     if not tracks:
         what = f"no pedestrian is in {path.name} for two rows, in this window of time and space"
-        raise BridgeError("bridge-file", what, "widen --from, --to and --crop; times count from the first frame")
+        raise BridgeError("bridge-file", what, "widen --start, --end and --crop; times count from the first frame")
     texts: dict[Path, str] = {}
     made: SuiteText | None = None
     notes, step_time = list[str](), layout.step_time

@@ -40,7 +40,7 @@ _FIRST, _ROOM = 2.0, 0.5
 """For how long from the start no pedestrian comes closer to where the robot starts than this [s, m]."""
 _EVENTS_PER_ROW = 6
 """Events of YAML of one row: a time, two numbers and the brackets around them."""
-_FIX = "choose a window of time or space: --from, --to, --crop"
+_FIX = "choose a window of time or space: --start, --end, --crop"
 
 
 @dataclass(frozen=True)

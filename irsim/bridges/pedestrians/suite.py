@@ -158,7 +158,7 @@ def windows_of(
     """
     if not tracks:
         what = "no pedestrian is in this window of time and space"
-        raise BridgeError("bridge-file", what, "widen --from, --to and --crop")
+        raise BridgeError("bridge-file", what, "widen --start, --end and --crop")
     low, high = bounds(tracks, layout)
     inset = np.minimum(max(layout.margin / 2, ROBOT_RADIUS), (high - low) / 4)
     inner_low, inner_high = low + inset, high - inset

@@ -6,6 +6,9 @@ from irsim.diagnostics.codes.code import Code
 
 __all__ = ["FILE_AND_YAML", "KEYS_AND_VALUES", "MAPS_AND_LIMITS"]
 
+_OWN = " One of your own is registered by its module: irsim run --import MODULE, or import it in a program."
+"""The end of the explanation of a name that a module of the user may register."""
+
 FILE_AND_YAML: dict[str, Code] = {
     # the file
     "file-not-found": Code(
@@ -177,12 +180,14 @@ KEYS_AND_VALUES: dict[str, Code] = {
         "group, counted from 0 in the order of the file. Each index must be below the number of members and may "
         "occur once.",
     ),
-    "unknown-kinematics": Code("unknown kinematics", "No drive of that name is built in or registered."),
-    "unknown-shape": Code("unknown shape", "No shape of that name is built in or registered."),
-    "unknown-sensor": Code("unknown sensor", "No sensor of that name is built in or registered."),
-    "unknown-distribution": Code("unknown distribution", "No distribution of that name is built in or registered."),
-    "unknown-map": Code("unknown map generator", "No map generator of that name is built in or registered."),
-    "unknown-planner": Code("unknown planner", "No path planner of that name is built in or registered."),
+    "unknown-kinematics": Code("unknown kinematics", "No drive of that name is built in or registered." + _OWN),
+    "unknown-shape": Code("unknown shape", "No shape of that name is built in or registered." + _OWN),
+    "unknown-sensor": Code("unknown sensor", "No sensor of that name is built in or registered." + _OWN),
+    "unknown-distribution": Code(
+        "unknown distribution", "No distribution of that name is built in or registered." + _OWN
+    ),
+    "unknown-map": Code("unknown map generator", "No map generator of that name is built in or registered." + _OWN),
+    "unknown-planner": Code("unknown planner", "No path planner of that name is built in or registered." + _OWN),
     "unknown-bridge": Code("unknown bridge", "No bridge of that name is built in or offered by an installed package."),
     "unknown-object": Code("unknown object", "No object of the scenario has that name."),
     "unknown-zone": Code("unknown zone", "No zone of 'world.zones' has that name."),
@@ -248,12 +253,6 @@ MAPS_AND_LIMITS: dict[str, Code] = {
         "Lengths and positions of more than 1e7 m, and speeds above 1e7 m/s, lose their precision to rounding. "
         "Lengths are in metres.",
     ),
-    "placement-impossible": Code(
-        "more objects than fit",
-        "The objects of this entry keep a distance (twice the radius, or 'min_distance'), and no arrangement of "
-        "that number of points fits into the range. No other seed or order can help: use fewer or smaller objects, "
-        "or a larger range.",
-    ),
     "placement-tight": Code(
         "random placement is likely to fail",
         "Objects that are placed at random, one after another, block each other when they cover about half of the "
@@ -273,10 +272,11 @@ MAPS_AND_LIMITS: dict[str, Code] = {
         "any mode. Wheels turned by more than 1.5708 drive backwards; 30 degrees are 0.5236.",
     ),
     "placement-crowded": Code(
-        "random placement or a perturbation found no free place",
-        "No free pose was found within the attempts. Use fewer or smaller objects, a larger range, or a smaller "
-        "min_distance; with perturb, a smaller spread. In a benchmark it is the outcome of that seed: it counts in no "
-        "rate and no mean, and the first line says which seeds these are.",
+        "no free place for an object",
+        "No free pose was found within the attempts, or the message says by arithmetic why no seed can find one: "
+        "objects keep a distance, twice the radius or 'min_distance', and goals a 'goal_distance'. Use fewer or "
+        "smaller objects, a larger range, or a smaller distance; with perturb, a smaller spread. In a benchmark it is "
+        "the outcome of that seed: it counts in no rate and no mean, and the first line says which seeds these are.",
     ),
     "bridges-not-opened": Code(
         "simulated without the bridges of the scenario",

@@ -15,6 +15,7 @@ from irsim.diagnostics.errors import CodedError
 from irsim.diagnostics.report import format_diagnostics
 from irsim.learning.tasks.task import Task
 from irsim.scenario.file_kind import FileKind
+from irsim.scenario.locate import near_files
 from irsim.scenario.yaml.document import Document, load_data, load_path
 
 __all__ = ["TASKS", "TaskError", "TaskSource", "environment_id", "open_task", "register_environments", "task_error"]
@@ -64,7 +65,9 @@ def open_task(source: TaskSource) -> tuple[Task, Path]:
     if not path.is_file() and str(source) in known:
         path = TASKS.bundled(str(source))
     if not path.is_file():
-        fix = suggestion(str(source), known, f"give a task file, or one of {', '.join(known)}")
+        files = near_files(str(source), [str(path.parent)])
+        fix = f"did you mean {clean(files[0])}?" if files else None
+        fix = fix or suggestion(str(source), known, f"give a task file, or one of {', '.join(known)}")
         raise TaskError(f"there is no task file {clean(str(source), 200)!r}", fix)
     return TASKS.read(load_path(path)), path.parent
 

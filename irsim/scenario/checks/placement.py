@@ -217,7 +217,7 @@ def _check_density(
     )
     path = (*placement.path, "distribution")
     if count > most:
-        yield error("placement-impossible", path, f"{why}, but at most {most} can: {area}", given=count, fix=fix)
+        yield error("placement-crowded", path, f"{why}, but at most {most} can: {area}", given=count, fix=fix)
     elif density > _MAX_DENSITY:
         yield warning(
             "placement-tight",
@@ -242,7 +242,7 @@ def _check_goal_distance(placement: Placement) -> Iterator[Finding]:
         else f"the range is {metres(longest)} from corner to corner"
     )
     yield (error if impossible else warning)(
-        "placement-impossible" if impossible else "placement-tight",
+        "placement-crowded" if impossible else "placement-tight",
         (*placement.path, "distribution", "goal_distance"),
         f"goals must be {wanted:g} m from their starts, and {where}"
         + ("" if impossible else ": starts and goals all lie near opposite corners"),
@@ -267,7 +267,7 @@ def _check_crossing(placement: Placement, records: list[ObjectRecord]) -> Iterat
         return
     impossible = ground > most
     yield (error if impossible else warning)(
-        "placement-impossible" if impossible else "placement-tight",
+        "placement-crowded" if impossible else "placement-tight",
         (*placement.path, "distribution"),
         f"{len(records)} objects must keep {distance:g} m between their centres in {placement.room}: they cover "
         f"{ground / (most if impossible else band):.0%} of it, and random placement gets stuck at about {limit:.0%}",

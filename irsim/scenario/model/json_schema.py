@@ -40,7 +40,7 @@ INEXPRESSIBLE: dict[str, str] = {
     "unknown-object": "names of objects made by the document",
     "role-mismatch": "one entry model serves both sections",
     "too-many-objects": "a sum over the document",
-    "placement-impossible": "arithmetic over the document",
+    "placement-crowded": "arithmetic over the document",
     "too-large": "places of one object come from several keys",
     "invalid-polygon": "geometry",
     "too-few-vertices": "closing and repeated corners do not count",

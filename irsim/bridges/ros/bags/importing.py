@@ -245,10 +245,10 @@ def import_bag(
     rows = _rows(result, options)
     times, poses = result.times[rows] - result.times[rows[0]], result.poses[rows]
     if len(times) * _EVENTS_PER_ROW > DEFAULT_LIMITS.events:
-        raise BridgeError("bridge-file", f"{len(times)} poses are more than a scenario may hold", "--from and --to")
+        raise BridgeError("bridge-file", f"{len(times)} poses are more than a scenario may hold", "--start and --end")
     if times[-1] > _MAX_STEPS * options.step_time:
         what = f"its poses span {times[-1]:.4g} s, which is more than {_MAX_STEPS:,} steps of {options.step_time:g} s"
-        raise BridgeError("bridge-file", what, "choose a part with --from and --to, or longer steps with --step-time")
+        raise BridgeError("bridge-file", what, "choose a part with --start and --end, or longer steps with --step-time")
     notes = [f"{result.ignored} messages were not usable and left out"] if result.ignored else []
     mount = options.mount or result.mount
     if mount is None and result.scans:
@@ -283,7 +283,7 @@ def _rows(recorded: Recorded, options: BagOptions) -> list[int]:
     inside = np.flatnonzero((recorded.times >= options.start) & (recorded.times <= options.end))
     if len(inside) < 2:
         what = f"the window of time has {len(inside)} poses; they last {recorded.times[-1]:.1f} s"
-        raise BridgeError("bridge-file", what, "--from 0")
+        raise BridgeError("bridge-file", what, "--start 0")
     kept = [int(inside[0])]
     for row in inside.tolist():
         if recorded.times[row] - recorded.times[kept[-1]] >= options.step_time * (1 - 1e-6):

@@ -1,0 +1,60 @@
+"""Names of options: one meaning each in all commands, groups of the help, and older names that still work."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from irsim.cli.completion import offers
+
+__all__ = ["OLD_NAMES", "PANELS", "finished"]
+
+OLD_NAMES: dict[str, dict[str, str]] = {
+    "inspect": {"--from": "--first", "--to": "--last", "--robot": "--objects"},
+    "diff": {"--run": "--simulate"},
+    "train": {"--steps": "--decisions"},
+    "map import": {"--robot": "--add-robot"},
+    "bridge preview": {"--view": "--eye"},
+    "bridge import-bag": {"--from": "--start", "--to": "--end"},
+    "bridge import-pedestrians": {"--from": "--start", "--to": "--end", "--robot": "--add-robot"},
+}
+"""Command -> older name of an option, which another command uses for something else -> its name."""
+PANELS: dict[str, str] = {
+    "What is simulated": "--seed --seeds --steps --until --perturb --policy --policies --bridge --protocol --scenario "
+    "--full --strict --import --max-objects",
+    "What is written": "--out --force --save-gif --record --record-to --export --submission --ros-map",
+    "What is printed": "--json --csv --show --verbose --require-success",
+    "How it runs": "--workers --threads --cluster --resume --max-time",
+}
+"""Group of options in the help of a long command -> its options; all others are in ``Options``."""
+_LONG = 8
+"""Number of options above which they are grouped."""
+
+
+def finished(command: Any, path: str) -> Any:
+    """Give a command, or the commands of a group, completions, groups of options and older names of options.
+
+    Args:
+        command: The command of Click.
+        path: Its words, such as ``map import``.
+    """
+    for name, one in getattr(command, "commands", {}).items():
+        finished(one, f"{path} {name}")
+    if hasattr(command, "commands"):
+        return command
+    options = [one for one in command.params if one.param_type_name == "option" and not one.hidden]
+    panel_of = {option: panel for panel, words in PANELS.items() for option in words.split()}
+    for one in options if len(options) > _LONG else ():
+        one.rich_help_panel = next((panel_of[name] for name in one.opts if name in panel_of), None)
+    for one in command.params:
+        if (offer := offers(path, one.name)) is not None:
+            one._custom_shell_complete = offer
+    if path in OLD_NAMES:
+        command.parse_args = partial(_parse, command.parse_args, OLD_NAMES[path])
+    return command
+
+
+def _parse(parse: Any, names: dict[str, str], context: Any, words: list[str]) -> Any:
+    """Parse words in which older names stand for the present ones."""
+    parts = [word.partition("=") for word in words]
+    return parse(context, [names.get(name, name) + sign + value for name, sign, value in parts])

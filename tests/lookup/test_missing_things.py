@@ -1,0 +1,57 @@
+"""What irsim does not have leads to the limits, and to what comes nearest."""
+
+from __future__ import annotations
+
+import pytest
+
+from irsim.diagnostics.errors import ScenarioNotFoundError
+from irsim.learning.tasks.files import TaskError, open_task
+from irsim.lookup import lookup
+from irsim.scenario.locate import locate
+
+
+@pytest.mark.parametrize(
+    ("asked", "nearest"),
+    [
+        ("odometry", "noise"),
+        ("wheel encoder", "noise"),
+        ("camera", "lidar2d"),
+        ("depth camera", "fov"),
+        ("IMU", "robot.state"),
+        ("GPS", "robot.state"),
+        ("legs", "omni_angular"),
+        ("gripper", "world.collision_mode: contact"),
+        ("drone", "omni"),
+        ("stairs", "zone"),
+    ],
+)
+def test_what_irsim_lacks_leads_to_the_limits_and_the_nearest_thing(asked: str, nearest: str) -> None:
+    answer = lookup(asked)
+    assert answer.kind == "guide"
+    assert "irsim has no" in answer.text
+    assert nearest in answer.text
+    assert "limits" in answer.see
+
+
+def test_space_is_a_limit() -> None:
+    assert lookup("3D").topic == lookup("limits").topic == "limits"
+
+
+@pytest.mark.parametrize("asked", ["suite", "suites"])
+def test_a_suite_leads_to_the_suites(asked: str) -> None:
+    assert lookup(asked).title.startswith("Suites")
+
+
+def test_names_of_files_lead_to_the_right_neighbour(workspace: object) -> None:
+    with pytest.raises(ScenarioNotFoundError, match="irsim templates"):
+        locate("nope.yaml")
+    with open("task.yaml", "w", encoding="utf-8") as file:
+        file.write("task: mine\n")
+    with pytest.raises(TaskError, match=r"did you mean task\.yaml\?"):
+        open_task("tsk.yaml")
+    with pytest.raises(TaskError, match=r"did you mean goal_lidar\?"):
+        open_task("goal_lidr")
+
+
+def test_an_unknown_sensor_says_how_one_of_ones_own_is_found() -> None:
+    assert "--import MODULE" in lookup("unknown-sensor").text
