@@ -27,7 +27,7 @@ EVERYDAY: dict[str, str] = {
     "robot.sensors.lidar2d.noise": "lidar noise, laser noise, sensor noise, measurement noise, noise",
     "robot.kinematics.diff.noise": "motion noise, actuator noise, odometry noise, noise",
     "robot.fov": "field of view, view angle, visual range, sees, seen, visible, visibility, surveillance, guard, "
-    "vision cone, view cone, sight cone, cone of vision, cone, camera, line of sight, watch, sight",
+    "vision cone, view cone, sight cone, cone of vision, cone, line of sight, watch, sight",
     "robot.kinematics.acker": "car, ackermann, ackerman, car-like, bicycle, bicycle model, vehicle, truck, bus, "
     "steering, tricycle, lorry"
     ", auto, lkw, fahrzeug, coche, camión, 汽车, 卡车, 车辆",

@@ -141,7 +141,7 @@ THINGS: dict[str, Guide] = {
         "robot: {kinematics: {name: diff, noise: true}, state: [2, 2, 0], goal: [8, 5],\n"
         "        sensors: [{name: lidar2d, noise: true}]}",
         (
-            *("odometer", "wheel encoder", "wheel encoders", "encoder", "encoders", "dead reckoning", "localization"),
+            *("odometer", "wheel encoder", "encoder", "dead reckoning", "localization"),
             *("localisation", "slam", "amcl", "odometrie", "odometría", "里程计", "定位"),
         ),
     ),
@@ -152,7 +152,7 @@ THINGS: dict[str, Guide] = {
         "preview renders a recorded run among splats, and irsim export --to colmap writes its camera poses.",
         "robot: {fov: 1.5, fov_radius: 5, fov_occlusion: true, sensors: [{name: lidar2d, angle_range: 1.5}]}",
         (
-            *("cameras", "depth camera", "rgb camera", "rgbd", "stereo camera", "webcam", "image", "images", "vision"),
+            *("depth camera", "rgb camera", "rgbd", "stereo camera", "webcam", "image", "vision"),
             *("object detection", "point cloud", "kamera", "tiefenkamera", "cámara", "相机", "摄像头", "深度相机"),
         ),
     ),

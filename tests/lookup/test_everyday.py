@@ -23,7 +23,7 @@ MEANT = {
     "range finder": "robot.sensors.lidar2d",
     "doppler": "robot.sensors.fmcw_lidar2d",
     "bumper": "robot.sensors.contact2d",
-    "camera": "robot.sensors",
+    "camera": "camera",
     "car": "robot.kinematics.acker",
     "ackermann": "robot.kinematics.acker",
     "bicycle model": "robot.kinematics.acker",
