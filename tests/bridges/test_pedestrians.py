@@ -318,7 +318,7 @@ def test_options_of_suites_that_do_not_fit(square: Path) -> None:
 
 def test_the_command() -> None:
     Path("obsmat.txt").write_text(crowds.obsmat())
-    arguments = ["import-pedestrians", "obsmat.txt", "-o", "scene.yaml", "--to", "5", "--json", "--robot-start=-4,3",
+    arguments = ["import-pedestrians", "obsmat.txt", "-o", "scene.yaml", "--end", "5", "--json", "--robot-start=-4,3",
                  "--robot-goal=5,3", "--smooth"]  # fmt: skip
     done = CliRunner().invoke(bridge_app, arguments)
     assert done.exit_code == 0, done.output

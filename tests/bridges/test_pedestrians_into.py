@@ -182,7 +182,7 @@ def test_the_command() -> None:
     call = ["import-pedestrians", "walk.txt", "--into", "hall.yaml"]
     done = CliRunner().invoke(bridge_app, [*call, "-o", "busy.yaml", "--offset=0.5,0", "--rotate", "10"])
     assert done.exit_code == 0, done.output
-    assert "wrote busy.yaml: 3 pedestrians in hall.yaml, 33 recorded places" in done.output
+    assert "wrote busy.yaml (3 pedestrians in hall.yaml, 33 recorded places" in done.output
     assert "irsim run busy.yaml" in done.output
     itself = CliRunner().invoke(bridge_app, [*call, "--json"])
     assert json.loads(itself.stdout)["file"] == "hall.yaml"

@@ -231,7 +231,7 @@ def test_the_command(scene) -> None:
     listed = call("flat.navmesh", "--list-levels")
     assert listed.exit_code == 0
     assert "level 1: floor at 3.00 m, 9.0 m² connected" in listed.output
-    done = call("flat.navmesh", "-o", "up.yaml", "--height", "2.8", "--robot")
+    done = call("flat.navmesh", "-o", "up.yaml", "--height", "2.8", "--add-robot")
     assert done.exit_code == 0
     wrote = "wrote up.yaml, up.png, up.bridge.json"
     for said in (wrote, "floor at 3.00 m, 9.0 m² connected", "this one", "irsim run up.yaml"):
