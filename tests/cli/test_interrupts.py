@@ -41,7 +41,7 @@ scenario: {robot: {kinematics: {name: diff}, state: [1, 1], goal: [4, 1]}}
 horizon: 5
 observation: [{name: goal}]
 reward: [{name: progress}]
-seeds: {validation: [1, 2]}
+seeds: {validation_count: 4}
 """
 
 
@@ -125,8 +125,8 @@ def test_an_interrupted_import_of_a_map_leaves_no_file(moment: int, tmp_path: Pa
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_an_interrupted_training_says_how_it_goes_on(workers: str, tmp_path: Path) -> None:
     (tmp_path / "task.yaml").write_text(TASK, encoding="utf-8")
-    few = ["--set", "slots=8", "--set", "rollout=16", "--set", "round_updates=1", "--steps", "600"]
-    said = interrupted(tmp_path, 12, "train", "task.yaml", "-o", "taught", *few, "--workers", workers)
+    few = ["--set", "slots=8", "--set", "rollout=16", "--set", "round_updates=1", "--decisions", "1200"]
+    said = interrupted(tmp_path, 24, "train", "task.yaml", "-o", "taught", *few, "--workers", workers)
     more = " --workers 2" if workers == "2" else ""
     assert said.endswith(f"go on: irsim train --resume -o taught{more}")
     follow(tmp_path, said)
