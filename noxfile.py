@@ -19,6 +19,7 @@
 - ``nightly``: what is too large for every change, and therefore no part of ``full``: Blender reads what we write;
   another tenth of the bench of avoidance; more damaged files and races; all tests that rotate, of which ``slow`` runs
   those of the day. ``neupan``: the examples of NeuPAN, where ``NEUPAN_SRC`` names a checkout of NeuPAN.
+- ``docs``: the documentation site, built and checked: links, code, search, accessibility. No part of ``full``.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 Markers choose the tests of each part, so all parts but ``sanitize`` collect all tests, which takes about 10 s.
@@ -77,6 +78,9 @@ BLENDER = "bpy==4.5.*"
 """Blender as a module (947 MB), for the Python of bridges; in its own environment, as it needs another NumPy."""
 NPM_PEERS = ("@sparkjsdev/spark@2.2.0", "three@0.180.0")
 """A renderer of Gaussian splats that ours are compared with, in a browser."""
+
+NPM_SITE = ("axe-core@4.11.0",)
+"""Checks of accessibility, for the documentation site."""
 
 QUICK = nox.project.load_toml("pyproject.toml")["tool"]["pytest"]["ini_options"]["addopts"][-1]
 """The markers of other parts, none of which quick tests have."""
@@ -246,6 +250,17 @@ def browser(session: nox.Session) -> None:
     """The page of `irsim replay` in headless Chromium: the one on PATH, else one from npm that needs nothing else."""
     install(session, "-e", ".[test]", PLAYWRIGHT)
     run_browser_tests(session)
+
+
+@nox.session(reuse_venv=True, python=find_python(NEWEST))
+def docs(session: nox.Session) -> None:
+    """The documentation site in ``site/html``, and its tests; nothing but the packages comes from the network."""
+    install(session, "-e", ".[test,docs]", PLAYWRIGHT)
+    folder = Path("site").resolve()
+    timed(session, "build", "python", ".ci/site/build.py", str(folder))
+    environment = {**find_chromium(session), "IRSIM_SITE": str(folder), "IRSIM_AXE": install_npm(session, NPM_SITE)}
+    options = ("-m", "site", "-n", "2", "--dist", "loadfile", "--durations", "10", *session.posargs)
+    timed(session, "tests of the site", "pytest", *options, env=environment)
 
 
 @nox.session(reuse_venv=True, python=find_python(NEWEST))

@@ -1,0 +1,26 @@
+// Asks the search of the site: node search.mjs HTML < questions as a list in JSON; answers a list of lists of pages.
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import vm from "node:vm";
+
+const html = process.argv[2];
+const ready = [];
+const element = { querySelectorAll: () => [], addEventListener: () => {}, appendChild: () => ({}), dataset: {} };
+const context = vm.createContext({
+  console, URLSearchParams, Stemmer: undefined,
+  document: { ...element, documentElement: element, body: element, getElementById: () => null, readyState: "loading",
+    addEventListener: (_, run) => ready.push(run) },
+  window: { location: { search: "" } }, localStorage: { setItem: () => {} }, SPHINX_HIGHLIGHT_ENABLED: false,
+  DOCUMENTATION_OPTIONS: {}, _: (text) => text, _ready: (run) => ready.push(run),
+  _removeChildren: () => {}, _escapeRegExp: (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"),
+});
+for (const name of ["_static/language_data.js", "_static/searchtools.js", "searchindex.js"]) {
+  vm.runInContext(readFileSync(join(html, name), "utf8"), context, { filename: name });
+}
+for (const run of ready) if (String(run).includes("rankByRarity")) vm.runInContext("rankByRarity(Search)", context);
+const questions = JSON.parse(readFileSync(0, "utf8"));
+context.questions = questions;
+const found = vm.runInContext(
+  `questions.map((one) => { const asked = Search._parseQuery(one);
+     return Search._performSearch(...asked).reverse().map((item) => item[0]); })`, context);
+console.log(JSON.stringify(found));

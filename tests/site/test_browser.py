@@ -1,0 +1,117 @@
+"""The site in Chromium: it is accessible, fits a phone, and its players play; nothing is written to the console."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import pytest
+
+from irsim.bundled import templates
+from tests.browser import until
+
+pytestmark = [pytest.mark.site, pytest.mark.one_python]
+
+PAGES = (
+    "index", "start/robotics", "start/from-ir-sim", "gallery/index", "gallery/crossing", "reference/index",
+    "reference/behavior/orca", "reference/codes", "reference/commands/run", "reference/tools", "reference/python/irsim",
+    "skills/irsim-scenario/SKILL", "skills/irsim-benchmark/results/referee", "suites/index", "CHANGELOG", "search",
+)  # fmt: skip
+
+
+class _Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, *arguments: Any) -> None:
+        pass
+
+
+@pytest.fixture(scope="module")
+def address(html: Path) -> Iterator[str]:
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Quiet, directory=str(html)))
+    thread = Thread(target=server.serve_forever)
+    thread.start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+@pytest.fixture(scope="module")
+def axe() -> str:
+    return (Path(os.environ["IRSIM_AXE"]) / "axe-core" / "axe.min.js").read_text(encoding="utf-8")
+
+
+def _page(chromium: Any, scheme: str, width: int = 1200) -> Any:
+    context = chromium.new_context(viewport={"width": width, "height": 800}, color_scheme=scheme)
+    page = context.new_page()
+    page.problems = []
+    page.on("console", lambda message: page.problems.append(message.text))
+    page.on("pageerror", lambda error: page.problems.append(str(error)))
+    return page
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_no_serious_finding_of_accessibility(chromium: Any, address: str, axe: str, scheme: str) -> None:
+    page, findings = _page(chromium, scheme), []
+    for name in PAGES:
+        page.goto(f"{address}/{name}.html")
+        page.add_script_tag(content=axe)
+        result = page.evaluate("axe.run(document, {iframes: false})")
+        for one in result["violations"]:
+            if one["impact"] in ("serious", "critical"):
+                findings.append(f"{name}: {one['id']}: {one['nodes'][0]['html'][:200]} ({len(one['nodes'])})")
+    page.context.close()
+    assert findings == []
+
+
+def test_pages_fit_a_phone(chromium: Any, address: str) -> None:
+    page, wide = _page(chromium, "light", width=390), []
+    for name in PAGES:
+        page.goto(f"{address}/{name}.html")
+        if page.evaluate("document.documentElement.scrollWidth") > 390:
+            wide.append(name)
+    page.context.close()
+    assert wide == []
+
+
+def test_pages_write_nothing_to_the_console(chromium: Any, address: str) -> None:
+    page = _page(chromium, "light")
+    for name in PAGES:
+        page.goto(f"{address}/{name}.html")
+    problems = page.problems
+    page.context.close()
+    assert problems == []
+
+
+def test_players_start(chromium: Any, address: str) -> None:
+    page, idle = _page(chromium, "light"), []
+    for name in templates.names():
+        page.goto(f"{address}/players/{name}.html")
+        until(page, "document.getElementById('time').max > 0")
+        if page.evaluate("document.querySelector('canvas') === null"):
+            idle.append(name)
+    problems = page.problems
+    page.context.close()
+    assert (problems, idle) == ([], [])
+
+
+def test_a_gallery_page_shows_its_player(chromium: Any, address: str) -> None:
+    page = _page(chromium, "light")
+    page.goto(f"{address}/gallery/crossing.html")
+    page.locator("iframe.irsim-player").scroll_into_view_if_needed()
+    frame = page.frame_locator("iframe.irsim-player")
+    frame.locator("canvas").first.wait_for(timeout=15_000)
+    page.context.close()
+
+
+def test_the_search_page_answers(chromium: Any, address: str) -> None:
+    page = _page(chromium, "light")
+    page.goto(f"{address}/search.html?q=lidar+noise")
+    page.locator("#search-results li a").first.wait_for(timeout=15_000)
+    firsts = page.locator("#search-results li a").evaluate_all("links => links.slice(0, 3).map((one) => one.href)")
+    page.context.close()
+    assert any("reference/sensor" in one for one in firsts), firsts
