@@ -18,10 +18,10 @@ from pathlib import Path
 from commands import command_pages
 from gallery import gallery_pages
 from language import language_pages, whereabouts
-from mirror import GUIDES, LISTED, files_of, mirrored, rewritten
+from mirror import FOLDERS, GUIDES, LISTED, files_of, mirrored, rewritten
 from pages import ROOT, Page, contents, link, once, summary_of
 from python_api import python_pages
-from redirects import write_stubs
+from redirects import STUB, write_stubs
 from suites import suite_pages
 from tools import tool_pages
 from twins import write_twins
@@ -131,7 +131,7 @@ def _indexes() -> Iterator[Page]:
     parts = [
         ("reference/world", "World", "keys of `world`, with zones and pictures"),
         ("reference/robot", "Robots and obstacles", "keys of `robot` and `obstacle`"),
-        ("reference/gui", "Keyboard and mouse", "keys of `gui`"),
+        ("reference/sections", "Other sections", "keyboard and mouse, your own data, the version"),
         *((f"reference/{kind}/index", f"{kind.capitalize()}", "") for kind in kinds),
         ("reference/things", "How to write it", "things, words and wishes, each with the keys that express it"),
         ("reference/policies", "Policies", "what drives robots from outside their scenario"),
@@ -172,11 +172,15 @@ def build(out: Path, *, previous: Path | None = None) -> None:
     shutil.rmtree(out / "doctrees", ignore_errors=True)
     lay_out(source, html)
     for path in sorted(source.rglob("*")):
-        if path.is_file() and path.suffix != ".md" and "pictures" not in path.parts:
+        if path.is_file() and path.suffix != ".md":
             target = html / path.relative_to(source)
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, target)
     write_twins(pages, html)
+    for folder, page in FOLDERS.items():
+        (html / folder).mkdir(parents=True, exist_ok=True)
+        to = f"{os.path.relpath(html / page, html / folder)}.html"
+        (html / folder / "index.html").write_text(STUB.format(to=to), encoding="utf-8")
     (html / ".nojekyll").write_text("", encoding="utf-8")
     (html / ".buildinfo").unlink(missing_ok=True)
     (html / "objects.inv").unlink(missing_ok=True)

@@ -101,11 +101,14 @@ def schema_anchor(path: tuple[str, ...]) -> str:
     path = tuple("behavior" if word == "group_behavior" else word for word in path)
     if "local" in path[:-1]:
         path = ("robot", "behavior", *path[path.index("local") + 1 :])
+    if path[:4] == ("robot", "shape", "compound", "parts") and path[-1] == "pose":
+        return "reference/shape/compound#shape.compound.parts.pose"
     if path[:4] == ("robot", "shape", "compound", "parts") and len(path) > 4:
         path = ("robot", "shape", *path[4:])
     component = _component_of(path)
     if component is None:
-        return f"reference/{path[0]}#{'.'.join(path)}"
+        page = {"world": "world", "robot": "robot", "bridges": "bridge/index"}.get(path[0], "sections")
+        return f"reference/{page}#{'.'.join(path)}"
     kind, name, rest = component
     return f"reference/{kind}/{name}#{'.'.join((kind, name, *rest))}"
 
@@ -162,17 +165,22 @@ def language_pages(where: dict[str, str]) -> Iterator[Page]:
 
 
 def _sections(where: dict[str, str]) -> Iterator[Page]:
-    titles = {"world": "World", "robot": "Robots and obstacles", "gui": "Keyboard and mouse"}
-    for start, title in titles.items():
+    titles = {
+        "world": ("World", ("world",)),
+        "robot": ("Robots and obstacles", ("robot",)),
+        "sections": ("Other sections", ("gui", "custom", "irsim")),
+    }
+    for start, (title, sections) in titles.items():
         page = f"reference/{start}"
-        own = [".".join(path) for path in _mappings() if path[0] == start and _component_of(path) is None]
+        inside = [".".join(path) for path in _mappings() if path[0] in sections and _component_of(path) is None]
+        own = [*inside, *(one for one in sections if one not in inside)]
         parts = [f"# {title}"]
         if start == "robot":
             parts.append("Entries of `robot:` and of `obstacle:` take the same keys.")
         kinds = {".".join(place) for place in PLACES.values()}
         shown = [topic for topic in own if topic not in kinds]
         parts += [section(_answer(topic), page, topic, where, title=f"`{topic}`") for topic in shown]
-        yield Page(page, "\n\n".join(parts), _twin(title, shown), title, f"Keys of the section `{start}`.")
+        yield Page(page, "\n\n".join(parts), _twin(title, shown), title, f"Keys of {', '.join(sections)}.")
 
 
 def _kind(kind: str, where: dict[str, str]) -> Iterator[Page]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from pages import ROOT, Page, anchor, contents, summary_of
 
-__all__ = ["GUIDES", "LISTED", "files_of", "mirrored", "rewritten"]
+__all__ = ["FOLDERS", "GUIDES", "LISTED", "files_of", "mirrored", "rewritten"]
 
 GUIDES = {
     "skills/irsim-scenario": "Scenarios",
@@ -17,7 +17,7 @@ GUIDES = {
     "skills/irsim-dev": "Changing irsim",
 }
 """Folder of a skill -> title of its part of the guides."""
-_FOLDERS = ("guides", "references", "recipes")
+_PARTS = ("guides", "references", "recipes")
 _OTHERS = {
     "README.md": "irsim on one page",
     "CHANGELOG.md": "Changelog",
@@ -29,11 +29,10 @@ _OTHERS = {
     "irsim/compat/README.md": "All differences from IR-SIM 2.12",
 }
 """Single files -> title, where theirs says too little."""
-_PLACES = {
+FOLDERS = {
     "templates": "gallery/index",
     "skills": "guides/index",
     "evals/cases": "evals/README",
-    "templates/": "gallery/index",
 }
 """Folders that links lead to -> the page about what is there."""
 _LINK = re.compile(r"(?P<text>!?\[[^\]]*\])\((?P<target>[^)\s]+)\)")
@@ -46,7 +45,7 @@ def _pages() -> dict[str, str]:
         result[f"{skill}/SKILL.md"] = title
         for path in sorted((ROOT / skill).rglob("*.md")):
             name = path.relative_to(ROOT).as_posix()
-            if path.parent.name in (*_FOLDERS, "bridges", "results") or path.name == "elements.md":
+            if path.parent.name in (*_PARTS, "bridges", "results") or path.name == "elements.md":
                 result.setdefault(name, "")
     return result
 
@@ -85,7 +84,7 @@ def mirrored() -> Iterator[tuple[Page, set[str]]]:
 def _parts(path: str) -> str:
     """Pages of a skill, for the navigation."""
     skill = path.removesuffix("/SKILL")
-    inside = [page for page in files_of(skill, *_FOLDERS, "examples") if not page.endswith("/SKILL")]
+    inside = [page for page in files_of(skill, *_PARTS, "examples") if not page.endswith("/SKILL")]
     return contents([page for page in inside if "/references/protocol_" not in page], hidden=True)
 
 
@@ -105,7 +104,7 @@ def rewritten(text: str, name: str) -> tuple[str, set[str]]:
         path = posixpath.normpath(posixpath.join(posixpath.dirname(name), target))
         if path in LISTED:
             return match[0]
-        page = _PLACES.get(path) or _gallery(path)
+        page = FOLDERS.get(path) or _gallery(path)
         if page is None and (ROOT / path).is_dir():
             inside = [one for one in (f"{path}/README.md", f"{path}/SKILL.md") if one in LISTED]
             page = inside[0].removesuffix(".md") if inside else None

@@ -71,7 +71,8 @@ def cell(text: str) -> str:
 
 def once(text: str) -> str:
     """A text in which each anchor is there once: where it is first."""
-    seen = set[str]()
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    seen = {anchor(re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")) for title in headings}
 
     def first(match: re.Match[str]) -> str:
         known = match[0] in seen

@@ -95,15 +95,32 @@ def _members(one: Any) -> dict[str, Any]:
     """Public methods and attributes of a class that have docstrings, also of its base classes here."""
     result = {}
     for key, member in one.all_members.items():
-        target = member.final_target if member.is_alias else member
+        target = _written(member.final_target if member.is_alias else member)
         if not key.startswith("_") and target.docstring is not None and (target.is_function or target.is_attribute):
-            result[key] = target
+            result[key] = member.final_target if member.is_alias else member
     return result
 
 
-def _member(owner: str, name: str, one: Any) -> str:
+def _written(one: Any) -> Any:
+    """The function of which an attribute of a class is made, as in ``time = computed(queries.time)``."""
+    if one.docstring is not None or not one.is_attribute:
+        return one
+    value = getattr(one.value, "arguments", [one.value])
+    path = getattr(value[0], "canonical_path", "") if value else ""
+    try:
+        return _package()[path.removeprefix("irsim.")] if str(path).startswith("irsim.") else one
+    except KeyError:
+        return one
+
+
+def _member(owner: str, name: str, member: Any) -> str:
+    one, is_value = _written(member), not member.is_function and hasattr(member.value, "arguments")
     parts = [f"### {owner.rpartition('.')[2]}.{name}", anchor(f"{owner}.{name}")]
-    parts += [_signature(f"{owner.rpartition('.')[2].lower()}.{name}", one)] if one.is_function else [_value(one)]
+    start = f"{owner.rpartition('.')[2].lower()}.{name}"
+    if one.is_function and is_value:
+        parts.append(f"```text\n{start}: {one.returns}\n```")
+    else:
+        parts.append(_signature(start, one) if one.is_function else _value(one))
     return "\n\n".join(part for part in [*parts, *_doc(one)] if part)
 
 
@@ -111,7 +128,7 @@ def _signature(name: str, one: Any) -> str:
     """The call as a program writes it, broken where it is long."""
     parts = []
     for parameter in one.parameters:
-        if parameter.name in ("self", "cls"):
+        if parameter.name in ("self", "cls", "env") and not parts:
             continue
         kind = parameter.kind.value if parameter.kind else ""
         stars = {"variadic positional": "*", "variadic keyword": "**"}.get(kind, "")

@@ -43,7 +43,9 @@ def read_page(path: Path) -> HtmlPage:
 
 @cache
 def read_pages(html: Path) -> dict[str, HtmlPage]:
-    """Path from the root -> page, without the pages that are players."""
+    """Path from the root -> page, without players and without pages that only lead on."""
     files = sorted(html.rglob("*.html"))
     names = [path.relative_to(html).as_posix() for path in files]
-    return {name: read_page(html / name) for name in names if not name.startswith(("players/", "_static/"))}
+    names = [name for name in names if not name.startswith(("players/", "_static/"))]
+    moved = 'http-equiv="refresh"'
+    return {name: read_page(html / name) for name in names if moved not in (html / name).read_text(encoding="utf-8")}
