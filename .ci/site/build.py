@@ -160,6 +160,19 @@ def lay_out(source: Path, html: Path, *, jobs: str = "2") -> None:
         raise SystemExit(f"Sphinx found mistakes (exit code {done.returncode})")
 
 
+def _finish(html: Path) -> None:
+    """Name the switches of the navigation, and let each page find the list of versions from its own place."""
+    listed = os.environ.get("IRSIM_SITE_SWITCHER", "_static/switcher.json")
+    for path in sorted(html.rglob("*.html")):
+        if path.relative_to(html).parts[0] in ("_static", "players"):
+            continue
+        text = path.read_text(encoding="utf-8")
+        text = text.replace("<summary><span", '<summary aria-label="Pages below this one"><span')
+        if "://" not in listed:
+            text = text.replace(f"'{listed}'", f"'{os.path.relpath(html / listed, path.parent)}'")
+        path.write_text(text, encoding="utf-8")
+
+
 def build(out: Path, *, previous: Path | None = None) -> None:
     """Build the whole site.
 
@@ -176,6 +189,7 @@ def build(out: Path, *, previous: Path | None = None) -> None:
             target = html / path.relative_to(source)
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, target)
+    _finish(html)
     write_twins(pages, html)
     for folder, page in FOLDERS.items():
         (html / folder).mkdir(parents=True, exist_ok=True)

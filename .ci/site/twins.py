@@ -40,11 +40,11 @@ def write_twins(pages: list[Page], html: Path) -> None:
         for page in parts[name]:
             about = f": {' '.join(page.summary.split())}" if page.summary else ""
             lines.append(f"- [{page.title}]({page.path}.md){about}")
-            size += len(page.twin.encode())
-            if name in ("start", "skills", "reference") and "/results/" not in page.path and size < FULL_BYTES - 5000:
-                full += ["", f"<!-- {page.path}.md -->", "", page.twin.strip()]
-            else:
-                size -= len(page.twin.encode())
+            whole = f"\n<!-- {page.path}.md -->\n\n{page.twin.strip()}"
+            most_read = name in ("start", "skills", "reference") and "/results/" not in page.path
+            if most_read and size + len(whole.encode()) < FULL_BYTES - 1000:
+                full.append(whole)
+                size += len(whole.encode()) + 1
     (html / "llms.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
     (html / "llms-full.txt").write_text("\n".join(full) + "\n", encoding="utf-8")
 

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable, Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import TypeVar
 
-__all__ = ["HtmlPage", "read_page", "read_pages"]
+import anyio
+
+__all__ = ["HtmlPage", "read_page", "read_pages", "run"]
+
+Answer = TypeVar("Answer")
 
 
 class HtmlPage(HTMLParser):
@@ -49,3 +56,9 @@ def read_pages(html: Path) -> dict[str, HtmlPage]:
     names = [name for name in names if not name.startswith(("players/", "_static/"))]
     moved = 'http-equiv="refresh"'
     return {name: read_page(html / name) for name in names if moved not in (html / name).read_text(encoding="utf-8")}
+
+
+def run(ask: Callable[[], Awaitable[Answer]]) -> Answer:
+    """Wait for an answer of the server in a thread of its own: Chromium keeps a loop in that of the tests."""
+    with ThreadPoolExecutor(max_workers=1) as pool:
+        return pool.submit(anyio.run, ask).result()

@@ -10,11 +10,12 @@ const context = vm.createContext({
   console, URLSearchParams,
   document: { ...element, documentElement: element, body: element, getElementById: () => null, readyState: "loading",
     addEventListener: (_, run) => ready.push(run) },
-  window: { location: { search: "" } }, localStorage: { setItem: () => {} }, SPHINX_HIGHLIGHT_ENABLED: false,
+  location: { search: "" }, localStorage: { setItem: () => {} }, SPHINX_HIGHLIGHT_ENABLED: false,
   DOCUMENTATION_OPTIONS: {}, _: (text) => text, _ready: (run) => ready.push(run),
   _removeChildren: () => {}, _escapeRegExp: (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"),
 });
-for (const name of ["_static/base-stemmer.js", "_static/english-stemmer.js", "_static/language_data.js", "_static/searchtools.js", "searchindex.js"]) {
+context.window = context;
+for (const name of ["_static/language_data.js", "_static/searchtools.js", "searchindex.js"]) {
   vm.runInContext(readFileSync(join(html, name), "utf8"), context, { filename: name });
 }
 for (const run of ready) if (String(run).includes("rankByRarity")) vm.runInContext("rankByRarity(Search)", context);

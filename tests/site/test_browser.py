@@ -17,6 +17,7 @@ from tests.browser import until
 
 pytestmark = [pytest.mark.site, pytest.mark.one_python]
 
+PROBLEMS = ("error", "warning")
 PAGES = (
     "index", "start/robotics", "start/from-ir-sim", "gallery/index", "gallery/crossing", "reference/index",
     "reference/behavior/orca", "reference/codes", "reference/commands/run", "reference/tools", "reference/python/irsim",
@@ -49,7 +50,7 @@ def _page(chromium: Any, scheme: str, width: int = 1200) -> Any:
     context = chromium.new_context(viewport={"width": width, "height": 800}, color_scheme=scheme)
     page = context.new_page()
     page.problems = []
-    page.on("console", lambda message: page.problems.append(message.text))
+    page.on("console", lambda message: page.problems.append(message.text) if message.type in PROBLEMS else None)
     page.on("pageerror", lambda error: page.problems.append(str(error)))
     return page
 

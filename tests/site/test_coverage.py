@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 from pathlib import Path
 
-import anyio
 import pytest
 from mcp import Client
 
@@ -21,7 +20,7 @@ from irsim.lookup.things import ALL_GUIDES
 from irsim.options.registry import REGISTRIES
 from irsim.scenario.model.json_schema import json_schema
 from irsim_mcp.server import build_server
-from tests.site.pages import read_pages
+from tests.site.pages import read_pages, run
 
 pytestmark = [pytest.mark.site, pytest.mark.one_python]
 
@@ -98,7 +97,7 @@ def test_tools_prompts_and_their_arguments(html: Path) -> None:
         arguments = [f"{tool.name}.{name}" for tool in tools for name in tool.input_schema.get("properties", {})]
         return [*(f"tool-{tool.name}" for tool in tools), *arguments, *(prompt.name for prompt in prompts)]
 
-    assert missing(html, "reference/tools", anyio.run(listed)) == []
+    assert missing(html, "reference/tools", run(listed)) == []
 
 
 @pytest.mark.parametrize("module", ["irsim", "irsim.policies", "irsim.policies.networks", "irsim.plugins", "irsim.runs",

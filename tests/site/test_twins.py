@@ -6,7 +6,6 @@ import re
 from pathlib import Path
 from typing import Any
 
-import anyio
 import pytest
 from mcp import Client
 
@@ -15,7 +14,7 @@ from irsim.bundled import templates
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.options.registry import REGISTRIES
 from irsim_mcp.server import build_server
-from tests.site.pages import read_pages
+from tests.site.pages import read_pages, run
 
 pytestmark = [pytest.mark.site, pytest.mark.one_python]
 
@@ -27,7 +26,7 @@ def ask(topics: list[str]) -> dict[str, str]:
         async with Client(build_server(Path())) as client:
             return {topic: await _text(client, topic) for topic in topics}
 
-    return anyio.run(each)
+    return run(each)
 
 
 async def _text(client: Any, topic: str) -> str:
@@ -40,7 +39,7 @@ def test_references_are_the_documents_of_the_server(html: Path) -> None:
             uris = [one.uri for one in (await client.list_resources()).resources if "//docs/" in str(one.uri)]
             return {str(uri): (await client.read_resource(uri)).contents[0].text for uri in uris}
 
-    documents = anyio.run(read)
+    documents = run(read)
     texts = {path.read_text(encoding="utf-8").strip() for path in html.rglob("*.md")}
     assert len(documents) > 20
     assert [uri for uri, text in documents.items() if text.strip() not in texts] == []

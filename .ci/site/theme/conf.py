@@ -17,6 +17,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "irsim"
 html_static_path = ["static"]
 html_css_files = ["irsim.css"]
+html_favicon = "static/favicon.svg"
 html_search_scorer = os.path.join(os.path.dirname(__file__), "search.js")
 html_copy_source = False
 html_show_sourcelink = False
