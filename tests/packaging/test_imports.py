@@ -21,7 +21,7 @@ MAX_ARROWS = 64
 MAX_LINES = 400
 LOOSE = {"__init__.py", "__main__.py", "_core.pyi", "plugins.py", "py.typed"}
 """Files that may stand directly below ``irsim/``."""
-BESIDE_ROOMS = {"docs", "evals", "fuzz", "interop", "mcp", "packaging", "parity", "skills", "speed"}
+BESIDE_ROOMS = {"docs", "evals", "fuzz", "interop", "mcp", "packaging", "parity", "skills", "speed", "site"}
 """Folders of tests that are about more than one room, or about what stands beside the rooms."""
 HELPERS = {"peers", "warm"}
 """Folders of ``tests/`` without any test."""

@@ -32,8 +32,21 @@ def fences_of(text: str) -> Iterator[Fence]:
 
 
 def commands_of(text: str) -> Iterator[list[str]]:
-    """Commands of irsim in a block for a terminal, as words; lines that end with a backslash go on."""
+    """Commands of irsim in a block for a terminal, as words; a backslash or an open quote goes on in the next line."""
+    waiting = ""
     for line in text.replace("\\\n", " ").splitlines():
-        for command in re.split(r" && | \| |; ", re.sub(r"(^|\s)#.*", "", line)):
-            if command.strip().startswith("irsim "):
-                yield shlex.split(command)
+        reader = shlex.shlex(waiting + line, posix=True, punctuation_chars="|&;")
+        reader.whitespace_split = True
+        try:
+            words = list(reader)
+        except ValueError:  # a quote is open
+            waiting += f"{line}\n"
+            continue
+        waiting, command = "", list[str]()
+        for word in [*words, ";"]:
+            if set(word) <= set("|&;"):
+                if command[:1] == ["irsim"]:
+                    yield command
+                command = []
+            else:
+                command.append(word)

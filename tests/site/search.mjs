@@ -4,21 +4,19 @@ import { join } from "node:path";
 import vm from "node:vm";
 
 const html = process.argv[2];
-const ready = [];
 const element = { querySelectorAll: () => [], addEventListener: () => {}, appendChild: () => ({}), dataset: {} };
 const context = vm.createContext({
   console, URLSearchParams,
-  document: { ...element, documentElement: element, body: element, getElementById: () => null, readyState: "loading",
-    addEventListener: (_, run) => ready.push(run) },
+  document: { ...element, documentElement: element, body: element, getElementById: () => null, readyState: "loading" },
   location: { search: "" }, localStorage: { setItem: () => {} }, SPHINX_HIGHLIGHT_ENABLED: false,
-  DOCUMENTATION_OPTIONS: {}, _: (text) => text, _ready: (run) => ready.push(run),
+  DOCUMENTATION_OPTIONS: {}, _: (text) => text, _ready: () => {},
   _removeChildren: () => {}, _escapeRegExp: (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"),
 });
 context.window = context;
 for (const name of ["_static/language_data.js", "_static/searchtools.js", "searchindex.js"]) {
   vm.runInContext(readFileSync(join(html, name), "utf8"), context, { filename: name });
 }
-for (const run of ready) if (String(run).includes("rankByRarity")) vm.runInContext("rankByRarity(Search)", context);
+vm.runInContext("rankByRarity(Search)", context);
 const questions = JSON.parse(readFileSync(0, "utf8"));
 context.questions = questions;
 const found = vm.runInContext(

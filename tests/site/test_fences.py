@@ -6,6 +6,7 @@ and examples of ``irsim describe`` in tests/lookup; of these pages, each block i
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -103,10 +104,13 @@ def test_code_on_all_pages_can_be_read(site: Path) -> None:
             if PLACEHOLDERS.search(fence.text):
                 continue
             try:
-                if fence.language in ("yaml", "json"):
+                if fence.language == "yaml":
                     list(yaml.safe_load_all(fence.text))
+                elif fence.language == "json":  # one value, or one a line
+                    parts = fence.text.splitlines() if fence.text.count("\n{") else [fence.text]
+                    [json.loads(part) for part in parts]
                 elif fence.language == "python":
                     compile(fence.text, str(path), "exec")
-            except (yaml.YAMLError, SyntaxError) as error:
+            except (yaml.YAMLError, SyntaxError, ValueError) as error:
                 wrong.append(f"{path.relative_to(site)}: {error}")
     assert wrong == []

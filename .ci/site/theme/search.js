@@ -5,9 +5,8 @@ var Scorer = {
   title: 15, partialTitle: 7, term: 5, partialTerm: 2,
 };
 
-document.addEventListener("DOMContentLoaded", () => {
-  if (typeof Search !== "undefined") rankByRarity(Search);
-});
+// Pages load this file after the script of the search, tests before it.
+if (typeof Search !== "undefined") rankByRarity(Search);
 
 function rankByRarity(search) {
   const inTitle = 4, beginsTitle = 2.5, inHeading = 1.5, partly = 0.4, shortest = 4;
