@@ -160,7 +160,7 @@ def episode_row(scenario: str, behavior: str, task: Task, result: Mapping[str, A
         scenario: Name of its scenario in the results.
         behavior: Its policy as text.
         task: Its task.
-        result: What :func:`irsim.benchmarks.pool.run_tasks` gives for the task.
+        result: The answer of :func:`irsim.benchmarks.pool.run_tasks` to the task.
     """
     metrics, copied = _without_nan(result["metrics"]), {key: result[key] for key in _COPIED}
     copied["roles"] = {role: _without_nan(values) for role, values in result["roles"].items()}

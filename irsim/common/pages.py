@@ -26,7 +26,7 @@ def one_page(sources: Path, script: str, *policy: str, variables: str = "", **pa
     Args:
         sources: The folder: it has ``page.html``, whose ``{{name}}`` are replaced, and one style sheet.
         script: The script of the page.
-        variables: Rules that come before those of the style sheet.
+        variables: Rules that come before the style sheet.
         *policy: Further rules of its content security policy, which allows only this style sheet and script.
         **parts: Name of a place in ``page.html`` -> the HTML there.
     """

@@ -146,7 +146,7 @@ class SnapshotResult(Result):
     plans: list[RobotPlan] = []
     """Planned paths of the robots, if requested."""
     left_out: list[str] = []
-    """What the picture leaves out because there is too much to show."""
+    """Things that the picture leaves out because there is too much to show."""
     size: tuple[int, int]
     """Width and height [px]."""
     warnings: list[Finding]

@@ -31,7 +31,7 @@ def test_the_suite_is_written_again_and_its_first_episodes_are_those_on_record(f
 
 
 def test_the_page_has_the_words_of_its_template() -> None:
-    """Numbers take minutes, and come from files that not everybody has; everything else is checked here."""
+    """Numbers take minutes, and need files that are not part of the repository; everything else is checked here."""
     shown, place = PAGE.read_text(encoding="utf-8"), 0
     for words, *_ in Formatter().parse(TEXT.read_text(encoding="utf-8")):
         place = shown.index(words, place) + len(words)

@@ -46,7 +46,7 @@ seeds: {validation_count: 4}
 
 
 def interrupted(folder: Path, moment: object, *words: str) -> str:
-    """What a command says that is interrupted; it says nothing else on standard error."""
+    """The message of an interrupted command, which is all that it writes to standard error."""
     command = [sys.executable, str(SCRIPT), str(moment), *words]
     done = subprocess.run(
         command, cwd=folder, capture_output=True, text=True, check=False, start_new_session=True, timeout=120

@@ -1,4 +1,4 @@
-"""What an environment says once, on standard error: how its steps are seen, and hints about its scenario."""
+"""An environment says some things once, on standard error: how its steps are seen, and hints about its scenario."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ S = TypeVar("S", TrainingSettings, SarlSettings)
 __all__ = ["SETTINGS_FILE", "RunFolder", "merit"]
 
 SETTINGS_FILE = "settings.yaml"
-"""What a training was asked for: a folder with it can go on."""
+"""The settings of a training: a folder that has them can go on."""
 
 
 def merit(facts: Mapping[str, Any]) -> tuple[float, float]:

@@ -297,7 +297,7 @@ def open_slots(
 
     Args:
         task: The task: its file, its data, or a task that was read.
-        num_envs: Number of learners of all worlds together; None: those of ``worlds``.
+        num_envs: Number of learners of all worlds together; None: as many as ``worlds`` have.
         worlds: Number of worlds, instead of ``num_envs``; None: one.
         seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
         threads: Number of threads of all processes together.

@@ -1,4 +1,4 @@
-"""What the published row depends on: ``python -m tests.benchmarks.crowdnav.changes`` prints that table of the page.
+"""The conditions of the published row: ``python -m tests.benchmarks.crowdnav.changes`` prints that table of the page.
 
 Each row has one change of the published scenario, over the 500 seeds of the suite.
 """
@@ -62,7 +62,7 @@ CHANGES: dict[str, Callable[[Data, Data], None]] = {
         _whole
     ),
     "the same with `safe_radius: 0.21`": _whole_with_margin,
-    "no `approach_time`: nobody slows down at the goal": _fast_at_goals,
+    "no `approach_time`: robots do not slow down at the goal": _fast_at_goals,
     "`timeHorizon: 2` for the robot": _set("timeHorizon", 2),
     "the robot's `goal_threshold: 0.1` instead of its radius": _near_goal,
     "`step_time: 0.1`": _step(0.1),

@@ -253,7 +253,7 @@ def main(name: str, folder: str | None = None, *, again: bool = False) -> None:
             first = run_plan(table.plan(policies=ready, seeds=1, scenarios=table.quick), Path(place))
         assert isinstance(first, SuiteResult)
         if changed := changed_lines(name, table.lines(first)):
-            raise SystemExit("\n".join(["the kept episodes are others than those of this program:", *changed]))
+            raise SystemExit("\n".join(["the kept episodes differ from the ones that this program makes:", *changed]))
     if missing:
         with nullcontext(folder) if folder else tempfile.TemporaryDirectory() as place:
             result = run_plan(table.plan(policies=missing), Path(place), resume=folder is not None)
