@@ -16,7 +16,7 @@ __all__ = ["DARK", "LIGHT", "THEMES", "Kind", "Shades", "Theme", "contrast", "cs
 
 RGB = tuple[float, float, float]
 Kind = Literal["robot", "person", "thing", "still"]
-"""What an object is drawn as; a thing moves, but is neither robot nor person."""
+"""The kind as which an object is drawn; a thing moves, but is neither robot nor person."""
 _STEPS = 40
 """Number of steps in which a colour is mixed with black or white until it is seen."""
 _KNOWN = 4096
@@ -25,7 +25,7 @@ _BLACK, _WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 _QUIET_SHARE = 0.22
 """Share of its own colour that the fill of a static body has."""
 _BLACK_LEVEL = 24 / 255
-"""A colour whose channels are all below this level counts as black, which means that nobody has chosen it."""
+"""A colour whose channels are all below this level counts as black, so as a colour that was not chosen."""
 _CSS_NAMES = {"near": "accent", "on": "on-accent"}
 """Names that variables of the page have instead of the names in the table."""
 
@@ -49,8 +49,8 @@ class Theme:
         rock: Occupied cells of maps.
         person, person_head: Shoulders and head of a person.
         danger: Contacts; nothing else has this colour.
-        good: What has arrived.
-        warn: What was stopped, and time limits.
+        good: Robots that have arrived.
+        warn: Robots that were stopped, and time limits.
         near, zero, away: Doppler hits that approach, keep their distance, recede; ``near`` also marks a picked robot.
         zone: Zones.
         fog: Fog, on which lines lie.
@@ -101,7 +101,7 @@ class Theme:
         """The shades in which the things of one object are drawn.
 
         Args:
-            kind: What the object is.
+            kind: Its kind.
             color: Its colour; black counts as not chosen, except for robots.
         """
         if kind == "robot":

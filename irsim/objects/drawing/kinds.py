@@ -1,4 +1,4 @@
-"""What an object is drawn as: a robot, a person, another moving thing, or something that stands."""
+"""The kind as which an object is drawn: a robot, a person, another moving thing, or something that stands."""
 
 from __future__ import annotations
 

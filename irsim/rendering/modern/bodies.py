@@ -44,7 +44,7 @@ def still_marks(thing: Thing, theme: Theme) -> list[Mark]:
 
 
 def moving_marks(thing: Thing, theme: Theme) -> list[Mark]:
-    """A moving obstacle that is no person: a disc or an outline, without a sign."""
+    """A moving obstacle other than a person: a disc or an outline, without a sign."""
     body = thing.mark
     if body is None:
         return []

@@ -1,4 +1,4 @@
-"""What surrounds the content of a picture: paper, grid, edge of the world, coordinates, scale bar, and the page."""
+"""The surroundings of a picture: paper, grid, edge of the world, coordinates, scale bar, and the page."""
 
 from __future__ import annotations
 

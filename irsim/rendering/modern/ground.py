@@ -1,4 +1,4 @@
-"""What lies below bodies: cells of maps with their contour, fog with its lines, zones."""
+"""The layers below bodies: cells of maps with their contour, fog with its lines, zones."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ _MAX_NAME = 40
 
 
 def outcome_word(simulation: Simulation, world: int, collisions: int) -> str:
-    """What has come of an episode so far: start, running, arrived, stopped, timeout, or the number of collisions."""
+    """The state of an episode so far: start, running, arrived, stopped, timeout, or the number of collisions."""
     if collisions:
         return plural(collisions, "collision")
     robots = simulation.robots
@@ -76,7 +76,7 @@ def heading_parts(
     Args:
         name: Name of the scenario, or the title that the user has set.
         seconds: Simulated time [s].
-        word: What has come of the episode; empty leaves the pill out.
+        word: The state of the episode; empty leaves the pill out.
         facts: Facts, the most important first.
         layout: The layout.
         theme: The colours.
@@ -127,7 +127,7 @@ def heading_parts(
 def legend_parts(
     layout: Layout, theme: Theme, sizes: TextSizes, *, beads: bool, velocities: bool, note: str = ""
 ) -> tuple[list[Mark], list[Label]]:
-    """What signs mean, in the foot at the right."""
+    """The legend of signs, in the foot at the right."""
     size, marks, labels = layout.sizes.foot_text, list[Mark](), list[Label]()
     middle, right = layout.sizes.foot / 2, layout.width - layout.left
     least = layout.left + 0.16 * layout.width + sizes.width("00 m (grid 00 m)", size) + 2 * _GAP

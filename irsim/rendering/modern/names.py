@@ -1,4 +1,4 @@
-"""Places for names and times: beside their thing, over nothing that must be seen, always found in the same way."""
+"""Places for names and times: beside their thing, over nothing that must be seen, always chosen in the same way."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def place_names(
 
     Args:
         wishes: The texts.
-        marks: What is drawn.
+        marks: The marks of the picture.
         fixed: Texts that have their place.
         layout: The layout.
         theme: The colours.
@@ -169,7 +169,7 @@ def _text_box(one: Label, layout: Layout, sizes: TextSizes) -> tuple[float, floa
 
 def _points(marks: Sequence[Mark], part: str, layout: Layout) -> Floats:
     """Points along lines, so close together that a text hardly lies between two of them [u]."""
-    found = [np.empty((0, 2))]
+    places = [np.empty((0, 2))]
     for mark in marks:
         if mark.part != part or not isinstance(mark.geometry, Line) or mark.zorder < _LEAST_LINE_Z:
             continue
@@ -178,8 +178,8 @@ def _points(marks: Sequence[Mark], part: str, layout: Layout) -> Floats:
             along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
             at = np.linspace(0.0, along[-1], 2 + int(along[-1] / _SPREAD))
             points = np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1)
-        found.append(points)
-    return np.concatenate(found)
+        places.append(points)
+    return np.concatenate(places)
 
 
 def _holds(boxes: Floats, points: Floats) -> Floats:

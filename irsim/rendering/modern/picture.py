@@ -60,12 +60,12 @@ class Picture:
 
     @property
     def notes(self) -> list[str]:
-        """What the last picture left out."""
+        """Things that the last picture left out."""
         return self._style.notes
 
     @property
     def word(self) -> str:
-        """What the last picture said has come of the episode."""
+        """The state of the episode, as the last picture said it."""
         return self._style.word
 
     def plain(self, overrides: Mapping[str, Any] | None = None, viewpoint: Any = None) -> tuple[Scene, SceneBuilder]:

@@ -1,4 +1,4 @@
-"""What objects sense: the free area and the hits of lidars, hits coloured by radial velocity, fields of view."""
+"""Sensing: the free area and the hits of lidars, hits coloured by radial velocity, fields of view."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ _NEAR_STAR = 2.0
 
 
 def touches(events: Sequence[Event], robots: set[str], passable: set[str]) -> tuple[list[Event], list[Event]]:
-    """Contacts in which a robot takes part, and those of others; not with what may be passed through."""
+    """Contacts with a robot, and contacts between others; without bodies that may be passed through."""
     kinds = ("collision", "contact_between_steps", "passed_through")
     solid = [event for event in events if event.kind in kinds and not {event.object, event.partner} & passable]
     own = [event for event in solid if {event.object, event.partner} & robots]

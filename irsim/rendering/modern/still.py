@@ -38,8 +38,8 @@ class StillPicture:
     Attributes:
         world_shown: x from, x to, y from, y to of what it shows [m].
         plans: Whether ways to goals are drawn, which is so unless the caller has added some.
-        notes: What it left out.
-        word: What it says has come of the episode.
+        notes: Things that it left out.
+        word: The state of the episode, as it says it.
     """
 
     def __init__(

@@ -37,7 +37,7 @@ _ADDED_PARTS = ("field", "plan", "contact")
 
 @dataclass(frozen=True)
 class Request:
-    """What a picture is to show besides bodies.
+    """The wishes for a picture, besides bodies.
 
     Attributes:
         overrides: Plot keys that hold instead of the scenario's.
@@ -46,10 +46,10 @@ class Request:
         zones: Whether zones are shown.
         title: In place of the name of the scenario.
         head: Whether there is a line above the world.
-        said: What the line of the moment before said has come of the episode; it is not said again.
+        said: The state that the line of the moment before has said; it is not said again.
         names: Whether robots have names where the scenario does not say so.
         plans: Whether ways to goals are shown.
-        events: Events of the episode; None: those of the simulation.
+        events: Events of the episode; None: the simulation's.
     """
 
     overrides: Mapping[str, Any] = field(default_factory=dict)
@@ -65,7 +65,7 @@ class Request:
 
 
 class ModernStyle:
-    """Draws scenes of one world. What does not change from one frame to the next consists of the same marks.
+    """Draws scenes of one world. Things that do not change from one frame to the next keep their marks.
 
     Args:
         simulation: The simulation.
@@ -73,8 +73,8 @@ class ModernStyle:
         theme: The colours.
 
     Attributes:
-        notes: What the last picture left out, as sentences.
-        word: What the last picture said has come of the episode.
+        notes: Things that the last picture left out, as sentences.
+        word: The state of the episode, as the last picture said it.
     """
 
     def __init__(self, simulation: Simulation, world: int, theme: Theme) -> None:
@@ -94,9 +94,9 @@ class ModernStyle:
 
         Args:
             scene: The scene, built with :data:`BUILD_KEYS`, and additions of the caller.
-            builder: What has made it.
+            builder: The builder that has made it.
             layout: The layout of the picture.
-            request: What it shows.
+            request: The wishes for it.
         """
         simulation, theme = self.simulation, self.theme
         if layout != self._layout:

@@ -29,7 +29,7 @@ MANY_ROBOTS = 50
 """Of more robots only bodies and short trails are drawn."""
 MANY_PEOPLE = 50
 _DISTINCT = 6
-"""Number of colours that can be told apart by anybody."""
+"""Number of colours that all people can tell apart."""
 _SMALLER = (1.0, 0.85, 0.62)
 """Factor of the least radius of robots: of few, of some and of many."""
 _CROWDED_PERSON, _CROWDED_SMALL_PERSON = 4.2, 3.8
@@ -132,7 +132,7 @@ def read_things(
         scene: The scene, with the bodies of its objects.
         simulation: The simulation.
         world: Index of the world.
-        builder: What has made the scene.
+        builder: The builder that has made the scene.
         layout: The layout of the picture.
         theme: Its colours.
         events: Events of the episode so far.
@@ -189,7 +189,7 @@ def _state(simulation: Simulation, view: ObjectView, hit: Event | None) -> State
 
 
 def _colors(shown: Sequence[ObjectView]) -> dict[int, Any]:
-    """The colour of each object; two to six robots that nobody has given a colour get one each."""
+    """The colour of each object; two to six robots whose colours were not chosen get one each."""
     colors = {view.id: view.color if view.color != "none" else "k" for view in shown}
     same = [view for view in shown if view.role == "robot" and view.color in (ROBOT_COLOR, ACKER_COLOR)]
     others = {str(view.color) for view in shown if view.role == "robot"} - {ROBOT_COLOR, ACKER_COLOR}

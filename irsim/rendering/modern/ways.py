@@ -151,7 +151,7 @@ def _left_of(route: Floats, here: Floats) -> Floats:
 
 
 def plan_marks(thing: Thing, path: Floats, layout: Layout) -> list[Mark]:
-    """What is ahead, dashed."""
+    """The way ahead, dashed."""
     line = stroke(thing.shades.edge, layout.sizes.plan, _DASHES)
     return [Mark(thing.number, "plan", Line(path), None, line, _PLAN_ALPHA, _PLAN_Z)]
 
