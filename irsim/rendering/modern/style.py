@@ -313,7 +313,7 @@ def _name_wish(thing: Thing) -> names.Wish:
 def _notes(crowd: Crowd, dropped: int) -> list[str]:
     notes = []
     if crowd.level == 1:
-        notes.append("with more than 12 robots only those that collided have names, and plans are left out")
+        notes.append("with more than 12 robots only the ones that collided have names, and plans are left out")
     if crowd.level == 2:
         notes.append("with more than 50 robots names, goals, plans and scans are left out")
     if dropped:
