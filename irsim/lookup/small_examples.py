@@ -72,6 +72,8 @@ _VALUES: dict[str, Any] = {
     "obstacle_map.ros.path": "maps/floor.yaml",
     "offset": [0.2, 0, 3.14159],
     "plot.alpha": 0.1,
+    "plot.style": "modern",
+    "plot.theme": "dark",
     "polygon": [[6, 1], [9, 1], [7, 4]],
     "radius": 4,
     "resolution": 0.1,

@@ -70,7 +70,7 @@ RESULTS = Path("irsim-benchmark", "results", "policies_of_the_paper.md")
 
 def rows(text: str, start: str) -> list[list[str]]:
     """The cells of the rows of the first table after a text."""
-    table = text[text.index(start) :].split("\n\n")[0]
+    table = re.split(r"\n\n|\n<!--", text[text.index(start) :])[0]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
 
 

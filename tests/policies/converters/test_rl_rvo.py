@@ -178,7 +178,7 @@ def test_the_command_converts_and_says_what_is_wrong(file: Path, tmp_path: Path)
     runner, out = CliRunner(), tmp_path / "out.npz"
     done = runner.invoke(app, ["convert", "rl_rvo", str(file), "-o", str(out), "--set", "acceler=0.5"])
     assert done.exit_code == 0, done.output
-    assert "parameters; try it: irsim run SCENARIO --policy" in done.output
+    assert "parameters)\ntry it: irsim run SCENARIO --policy" in done.output
     out.write_bytes(b"kept")
     for arguments, message in (
         (["rl_rv", str(file)], "did you mean rl_rvo"),
