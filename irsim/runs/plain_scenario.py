@@ -46,7 +46,7 @@ def plain_scenario(simulation: Simulation, outlines: Sequence[Any]) -> bytes:
             models = {key: _values(getattr(record, key)) for key in _MODELS}
             options.append(dict(zip(_LIKE, like, strict=True)) | models)
         own = dict(zip(_EACH, _each(record), strict=True))
-        own["shape"] = _values(record.shape)
+        own["shape"] = _values(record.shape) if isinstance(record.shape, BaseModel) else record.shape.model_dump()
         objects.append({**own, "state": [*pose, *record.state[3:]], "goals": goals(row), "options": len(options) - 1})
     whole = {
         "name": scenario.name,

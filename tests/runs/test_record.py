@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from pydantic_core import from_json, to_json
 from typer.testing import CliRunner
 
@@ -84,6 +85,19 @@ def test_what_many_objects_have_in_common_is_kept_once(workspace: Path) -> None:
         assert [item["kinematics"]["name"] for item in run.resolved["objects"]] == ["diff"] * number
         sizes.append((run.folder / "resolved.json").stat().st_size)
     assert sizes[1] < 100 * sizes[0] / 4
+
+
+@pytest.mark.parametrize(
+    "world",
+    ["obstacle_map: {name: perlin, resolution: 0.2}", "obstacle_map: {name: ros, path: floor.yaml}, boundary: walls"],
+)
+def test_two_records_of_a_map_say_the_same(workspace: Path, world: str) -> None:
+    (workspace / "floor.yaml").write_text("image: floor.png\nresolution: 0.1\norigin: [0, 0, 0]\n")
+    Image.new("L", (40, 40), 254).save(workspace / "floor.png")
+    (workspace / "map.yaml").write_text(f"world: {{width: 4, height: 4, time_limit: 1, {world}}}\n")
+    texts = [(recorded(workspace / "map.yaml", seed=1).folder / "resolved.json").read_bytes() for _ in range(2)]
+    assert texts[0] == texts[1]
+    assert b"object at 0x" not in texts[0]
 
 
 def test_a_piece_of_the_trace_is_an_archive_for_everybody(room: Path) -> None:
