@@ -23,16 +23,25 @@ DEFAULT_STYLE: Style = "modern"
 """Style of what commands draw of a scenario that does not say its style."""
 
 
-def with_look(scenario: ResolvedScenario, style: str | None = None, theme: str | None = None) -> ResolvedScenario:
+def with_look(
+    scenario: ResolvedScenario,
+    style: str | None = None,
+    theme: str | None = None,
+    *,
+    printed: bool = False,
+    as_strip: bool = False,
+) -> ResolvedScenario:
     """The scenario with the style and the theme in which it is drawn.
 
     Args:
         scenario: The scenario.
         style: ``modern`` or ``classic``; None: the scenario's.
         theme: ``light`` or ``dark``; None: the scenario's.
+        printed: Whether the layout for print is asked for.
+        as_strip: Whether a strip is asked for.
 
     Raises:
-        InputError: There is no such style or theme.
+        InputError: There is no such style or theme, or the style or a strip has no such theme or layout.
     """
     for given, known, what in ((style, STYLES, "style"), (theme, THEME_NAMES, "theme")):
         if given is not None and given not in known:
@@ -41,6 +50,11 @@ def with_look(scenario: ResolvedScenario, style: str | None = None, theme: str |
             raise InputError(f"{clean(given, 40)!r} is not a {what} of pictures", fix)
     plot = scenario.world.plot
     chosen = {"style": style or plot.style or DEFAULT_STYLE, "theme": theme or plot.theme}
+    if chosen["style"] == "classic" and (theme is not None or printed):
+        what = "a layout for print" if printed else "themes"
+        raise InputError(f"the style classic does not have {what}", "choose the style modern, or leave this out")
+    if printed and as_strip:
+        raise InputError("a strip does not have a layout for print", "leave out one of them")
     plot = plot.model_copy(update=chosen)
     return replace(scenario, world=scenario.world.model_copy(update={"plot": plot}))
 

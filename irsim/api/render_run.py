@@ -67,7 +67,7 @@ def render_run(
     if strip is not None or shown is not None:
         check_suffix(target, ["png"])
     moments = None if strip is None else moments_of(last, strip)
-    scenario = with_look(scenario_of(opened, limits), style, theme)
+    scenario = with_look(scenario_of(opened, limits), style, theme, printed=printed, as_strip=strip is not None)
     env = Env(scenario, seed=int(opened.meta["seed"]), display=False, log_level="ERROR")
     move, table = follow_record(opened, env), scene_table(env.scenario, env.seed, None)
     given = ["--steps", str(last), *([] if size is None else ["--size", str(size)]), *region_options(region)]

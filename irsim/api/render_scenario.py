@@ -125,7 +125,7 @@ def render(
             driven=driven,
         )
         return write_sheet(sheet, target, scene_table(scenario, sheet.seed, driven if driver is not None else None))
-    scenario = with_look(scenario, style, theme)
+    scenario = with_look(scenario, style, theme, printed=printed)
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR", policy=driver)
     show_part(env, size, region, printed)
     horizon, _ = horizon_of(env.simulation, steps if animated else steps or 0, limits or DEFAULT_LIMITS)

@@ -147,7 +147,7 @@ def snapshot_of(
         from irsim.graphics.scene.scene import region_extent
 
         region_extent(region)  # reports an invalid region before the simulation
-    scenario = with_look(scenario, style, theme)
+    scenario = with_look(scenario, style, theme, printed=printed, as_strip=strip is not None)
     shown = None if overlays is None else overlays_from(overlays)
     chosen_seed = seed_of(scenario, seed)
     env, _ = first_with_room(
