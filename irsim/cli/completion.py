@@ -1,4 +1,4 @@
-"""What the TAB key offers as values: policies, topics, templates, suites, tasks, runs and keys of settings.
+"""Values that the TAB key offers: policies, topics, templates, suites, tasks, runs and keys of settings.
 
 ``irsim --install-completion`` teaches it to the shell. Without an offer the shell completes names of files.
 """

@@ -20,11 +20,11 @@ OLD_NAMES: dict[str, dict[str, str]] = {
 }
 """Command -> older name of an option, which another command uses for something else -> its name."""
 PANELS: dict[str, str] = {
-    "What is simulated": "--seed --seeds --steps --until --perturb --policy --policies --bridge --protocol --scenario "
+    "Simulation": "--seed --seeds --steps --until --perturb --policy --policies --bridge --protocol --scenario "
     "--full --strict --import --max-objects",
-    "What is written": "--out --force --save-gif --record --record-to --export --submission --ros-map",
-    "What is printed": "--json --csv --show --verbose --require-success",
-    "How it runs": "--workers --threads --cluster --resume --max-time",
+    "Files": "--out --force --save-gif --record --record-to --export --submission --ros-map",
+    "Output": "--json --csv --show --verbose --require-success",
+    "Processes and time": "--workers --threads --cluster --resume --max-time",
 }
 """Group of options in the help of a long command -> its options; all others are in ``Options``."""
 _LONG = 8

@@ -111,7 +111,7 @@ def show_written(files: str | Path | Sequence[str], about: str = "", *, stderr: 
 
     Args:
         files: One file or folder, or several; names below the current directory are shortened.
-        about: What is in them.
+        about: Their content.
         stderr: Print to standard error instead of standard output.
     """
     from rich.text import Text

@@ -20,7 +20,7 @@ def answers_misspelt(function: Callable[P, R]) -> Callable[P, R]:
 
     Editors and type checkers see the signature of the function itself.
     """
-    code: Any = getattr(function, "__code__")  # noqa: B009 - a Callable of types has none
+    code: Any = getattr(function, "__code__")  # noqa: B009 - the type Callable does not have it
     known = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
 
     @functools.wraps(function)

@@ -65,7 +65,7 @@ def commands(command: Any, words: str) -> Iterator[tuple[str, Any]]:
 
 def every_command() -> list[tuple[str, Any]]:
     group: Any = typer.main.get_command(app)
-    return [found for name in COMMANDS for found in commands(group.get_command(None, name), name)]
+    return [one for name in COMMANDS for one in commands(group.get_command(None, name), name)]
 
 
 def test_an_option_has_one_meaning_in_all_commands() -> None:
@@ -100,12 +100,12 @@ def test_the_help_is_grouped(irsim: Run) -> None:
     assert places == sorted(places)
     for name in ("run", "benchmark"):
         page = irsim(name, "--help", code=0).stdout
-        for panel in ("What is simulated", "What is written", "What is printed"):
+        for panel in ("Simulation", "Files", "Output"):
             assert f" {panel} " in page, name
 
 
 def completed(line: str, folder: Path) -> list[str]:
-    """What the TAB key offers after a line."""
+    """The words that the TAB key offers after a line."""
     words = line.split(" ")
     variables = {"_IRSIM_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(words) - 1)}
     done = subprocess.run(

@@ -1,4 +1,4 @@
-"""What irsim does not have leads to the limits, and to what comes nearest."""
+"""A thing that irsim does not have leads to the limits, and to what comes nearest."""
 
 from __future__ import annotations
 

@@ -59,6 +59,6 @@ def read_pages(html: Path) -> dict[str, HtmlPage]:
 
 
 def run(ask: Callable[[], Awaitable[Answer]]) -> Answer:
-    """Wait for an answer of the server in a thread of its own: Chromium keeps a loop in that of the tests."""
+    """Wait for an answer of the server in a thread of its own: Chromium keeps a loop in the thread of the tests."""
     with ThreadPoolExecutor(max_workers=1) as pool:
         return pool.submit(anyio.run, ask).result()
