@@ -169,8 +169,9 @@ def test_another_version_and_missing_modules_are_found_before_any_episode(
     with pytest.raises(ClusterError, match="cannot run what this process can") as error:
         irsim.benchmark("scene.yaml", "dash", 2, cluster=cluster.address, imports=["only_here"], log="log")
     assert error.value.code == "cluster-differs"
-    monkeypatch.setattr("irsim.benchmarks.cluster.version", lambda: "99.0")
-    with pytest.raises(ClusterError, match=rf"has irsim {irsim.__version__}, and this is irsim 99\.0"):
+    monkeypatch.setattr("irsim.benchmarks.cluster.program", lambda: "99.0, engine 0")
+    said = rf"has irsim {irsim.__version__}, engine \w+, and this is irsim 99\.0, engine 0"
+    with pytest.raises(ClusterError, match=said):
         irsim.benchmark("scene.yaml", "dash", 2, cluster=cluster.address, log="log")
     assert Path("log").read_bytes().count(b"\n") == 1
 
