@@ -81,7 +81,7 @@ def test_folders_are_not_mixed_up(tmp_path: Path) -> None:
     ids=["vectors", "sets", "choices"],
 )  # fmt: skip
 def test_exported_policies_decide_as_torch_does(made: dict[str, Any], tmp_path: Path) -> None:
-    env = SB3VecEnv(made, 3)
+    env = SB3VecEnv(made, worlds=3)
     columns = columns_of(env.worlds.eyes, env.worlds.task.observation)
     kwargs = {"features_extractor_class": PartsExtractor, "features_extractor_kwargs": {"columns": columns}}
     sets = any(part.members for part in columns)
@@ -137,7 +137,7 @@ def test_an_exported_onnx_model_decides_as_the_file_of_irsim(tmp_path: Path) -> 
 
 
 def test_waiting_slots_are_not_learnt_from() -> None:
-    env = SB3VecEnv(task({"state": [8.65, 5, 0]}, {"state": [1, 2, 0], "goal": [9, 2]}, protocol="freeze"), 1)
+    env = SB3VecEnv(task({"state": [8.65, 5, 0]}, {"state": [1, 2, 0], "goal": [9, 2]}, protocol="freeze"), worlds=1)
     buffer = MaskedRolloutBuffer(4, env.observation_space, env.action_space, device="cpu", n_envs=2)
     buffer.reset()
     for step in range(4):
