@@ -41,7 +41,7 @@ def with_look(
         as_strip: Whether a strip is asked for.
 
     Raises:
-        InputError: There is no such style or theme, or the style or a strip has no such theme or layout.
+        InputError: There is no such style or theme, or classic pictures or strips do not have it.
     """
     for given, known, what in ((style, STYLES, "style"), (theme, THEME_NAMES, "theme")):
         if given is not None and given not in known:

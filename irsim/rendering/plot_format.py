@@ -72,7 +72,7 @@ class PlotFormat:
         return None if self._modern is None else list(self._modern.theme.tokens.values())
 
     def _renew_style(self) -> None:
-        """Make the style anew, because the simulation or the options have changed; the figure keeps its size."""
+        """Make the style again after a change of the simulation or the options; the figure keeps its size."""
         if self._modern is not None and self._chosen is not None:
             _, theme, printed = self._chosen
             layout = self._modern.layout

@@ -33,7 +33,7 @@ from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.simulation.engine import engine
 
-__all__ = ["check_records", "rows_of"]
+__all__ = ["check_records", "named_engine", "rows_of"]
 
 _TOLERANCE = 1e-9
 """Greatest difference of a start that is drawn again on another system."""
@@ -46,6 +46,11 @@ def rows_of(claim: Claim, result: SuiteResult) -> dict[tuple[str, str, int], Epi
     """The rows by scenario, name of the policy and seed."""
     names = {text: name for name, text in claim.plan.policies.items()}
     return {(one.scenario, names.get(one.behavior, ""), one.seed): one for one in result.episodes}
+
+
+def named_engine(manifest: Manifest) -> str:
+    """Words about the engine that a submission names, to follow a difference; empty if it is this engine."""
+    return "" if manifest.engine == engine() else f" (it names engine {manifest.engine}, and this is {engine()})"
 
 
 def check_records(
@@ -77,7 +82,7 @@ def check_records(
         if audit.problems:
             continue
         sampled += 1
-        by = "" if manifest.engine == engine() else f" (it names engine {manifest.engine}, and this is {engine()})"
+        by = named_engine(manifest)
         for what, recorded, known in _origin(folder / one.folder, one, claim, manifest):
             problems.add("submission-origin", one.folder, what + by, given=recorded, allowed=known)
         for what, recorded, known in _differences(rows[key], audit, claim.plan.until == "first_collision"):

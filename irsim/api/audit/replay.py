@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from irsim.api.audit.problems import Problems, flat, is_close
-from irsim.api.audit.records import rows_of
+from irsim.api.audit.records import named_engine, rows_of
 from irsim.api.audit.suite import Claim
 from irsim.api.benchmark_report import record_episode
 from irsim.benchmarks.comparison import episode_row
@@ -118,7 +118,7 @@ def _compare_row(
     names = sorted({*mine, *theirs}, key=lambda name: (name not in ("outcome", "steps"), name))
     odd = [name for name in names if not is_close(theirs.get(name), mine.get(name), tolerance)]
     if odd:
-        by = "" if manifest.engine == engine() else f" (it names engine {manifest.engine}, and this is {engine()})"
+        by = named_engine(manifest)
         more = f" and {len(odd) - 1} other values" if len(odd) > 1 else ""
         what = f"{odd[0]}{more} of the row of {', '.join(map(str, key))} differ from the episode that was run again{by}"
         problems.add("submission-replay", RESULTS, what, given=theirs.get(odd[0]), allowed=mine.get(odd[0]))

@@ -31,7 +31,7 @@ _PICKED_RING, _PICKED_GAP = 2.0, 5.0
 _MANY_RING = 1.2
 _DIAGONAL = math.sqrt(0.5)
 _NEAR_STAR = 2.0
-"""A robot whose star is nearer than so many of its radii has no badge besides."""
+"""Distance to a star, in radii of the robot, below which the robot does not have a badge, too."""
 
 
 def touches(events: Sequence[Event], robots: set[str], passable: set[str]) -> tuple[list[Event], list[Event]]:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["FEW_ROBOTS", "MANY_ROBOTS", "Crowd", "Thing", "read_things"]
 
 FEW_ROBOTS = 12
-"""Up to so many robots everything is drawn."""
+"""Most robots with which everything is drawn."""
 MANY_ROBOTS = 50
 """Of more robots only bodies and short trails are drawn."""
 MANY_PEOPLE = 50

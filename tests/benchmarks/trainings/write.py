@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from irsim.benchmarks.plan import Plan
 from irsim.benchmarks.stored import measure_plan
+from irsim.benchmarks.suite import Protocol
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.common.hashing import file_digest
 from irsim.metrics.statistics import bootstrap
@@ -25,7 +26,7 @@ __all__ = ["OUTCOMES", "PAGE", "Kept", "kept_outcomes", "lines_of", "page", "pla
 
 PAGE = Path(__file__).resolve().parents[3] / "skills" / "irsim-benchmark" / "results" / "trainings.md"
 OUTCOMES = Path(__file__).with_name("outcomes.csv")
-PROTOCOLS = {"multi_robot": "yield", "multi_robot_freeze": "freeze", "sarl_multi_robot": "freeze"}
+PROTOCOLS: dict[str, Protocol] = {"multi_robot": "yield", "multi_robot_freeze": "freeze", "sarl_multi_robot": "freeze"}
 """Name of a recipe -> the protocol that its task trains for, and that its policies are measured under."""
 EPISODES = range(30_000, 30_100)
 _SHIPPED = "shipped"
@@ -69,9 +70,7 @@ class Kept(NamedTuple):
 def plan_of(name: str, seeds: Sequence[int] = EPISODES) -> Plan:
     """The episodes of the trainings of one recipe whose weights are there, and of the policy that is shipped."""
     policies = [name, *(str(weights_of(name, seed)) for seed in SEEDS if weights_of(name, seed).is_file())]
-    protocol = PROTOCOLS[name]
-    assert protocol in ("yield", "freeze")
-    return suite_plan("random_polygons_v1", policies=policies, protocols=[protocol], seeds=list(seeds))
+    return suite_plan("random_polygons_v1", policies=policies, protocols=[PROTOCOLS[name]], seeds=list(seeds))
 
 
 def lines_of(name: str, plan: Plan, episodes: Sequence[EpisodeRow]) -> list[Kept]:
