@@ -66,6 +66,8 @@ def pixel_of(page: Any, x: float, y: float, world: tuple[float, float] = (12, 8)
 
 
 def value(page: Any, name: str) -> str:
+    """A value of the panel, once the next frame has written it."""
+    settled(page)
     pairs = page.locator("#values").evaluate(
         "list => [...list.querySelectorAll('dt')].map(t => [t.textContent, t.nextSibling.textContent])"
     )
@@ -299,8 +301,8 @@ def test_dark_and_light(run: Run, watched: Watched) -> None:
     corner = [2, 2, 8, 8]
     assert min(page.evaluate(SHARE, corner)) > 200
     page.emulate_media(color_scheme="dark")
+    until(page, "document.documentElement.dataset.theme === 'dark'")
     settled(page)
-    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
     assert max(page.evaluate(SHARE, corner)) < 60
     page.click("#theme")
     settled(page)
@@ -313,6 +315,7 @@ def test_texts_have_contrast(run: Run, watched: Watched) -> None:
     page = watched.open(Path(irsim.replay(run).file))
     for theme in ("light", "dark"):
         page.emulate_media(color_scheme=theme)
+        until(page, f"document.documentElement.dataset.theme === '{theme}'")
         colors = page.evaluate(
             """names => {
                 const style = getComputedStyle(document.documentElement);
