@@ -20,6 +20,7 @@
   another tenth of the bench of avoidance; more damaged files and races; all tests that rotate, of which ``slow`` runs
   those of the day. ``neupan``: the examples of NeuPAN, where ``NEUPAN_SRC`` names a checkout of NeuPAN.
 - ``docs``: the documentation site, built and checked: links, code, search, accessibility. No part of ``full``.
+- ``version``: writes the version, or the owner of the repository, into all files that hold it (``RELEASING.md``).
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 Markers choose the tests of each part, so all parts but ``sanitize`` collect all tests, which takes about 10 s.
@@ -52,28 +53,8 @@ VIDEOS = "moviepy>=2"
 FULL = ("newest", "lowest", "sanitize", "evals", "records", "onnx", "cluster", "learn", "interop")
 INTEROP = "3.11"
 """The Python of bridges: that of Debian 12, whose packages of ROS it imports; CARLA has a client for it, too."""
-DEBIAN_PEERS = (
-    "chromium", "fastddsgen", "g++", "libfastrtps-dev", "libnav-msgs-dev", "libosmesa6", "librecast-dev",
-    "libsdformat-dev", "python3-geometry-msgs", "python3-nav-msgs", "python3-rospy", "python3-sensor-msgs",
-    "python3-tf2-msgs", "python3-visualization-msgs", "ros-base", "ros-nav-msgs", "xvfb",
-)  # fmt: skip
-"""Packages of Debian 12 that bridges meet in tests."""
-PYTHON_PEERS = (
-    "dm-control>=1.0.30",
-    "drawsvg>=2.4",
-    "geojson>=3",
-    "geopandas>=1",
-    "mcap-ros2-support>=0.5",
-    "meshoptimizer==0.2.30a0",
-    "msgpack>=1",
-    "osmium>=4",
-    "pycolmap>=4",
-    "pyogrio>=0.10",
-    "pyproj>=3.6",
-    "svgwrite>=1.4",
-    "zenoh-ros2-sdk==0.1.8",
-)
-"""Packages of Python that bridges meet in tests, and that are no dependencies."""
+PEERS = nox.project.load_toml(".ci/interop.toml")
+"""Packages of Debian 12, and of Python, that bridges meet in tests, and that are no dependencies."""
 BLENDER = "bpy==4.5.*"
 """Blender as a module (947 MB), for the Python of bridges; in its own environment, as it needs another NumPy."""
 NPM_PEERS = ("@sparkjsdev/spark@2.2.0", "three@0.180.0")
@@ -263,6 +244,15 @@ def docs(session: nox.Session) -> None:
     timed(session, "tests of the site", "pytest", *options, env=environment)
 
 
+@nox.session(reuse_venv=True)
+def version(session: nox.Session) -> None:
+    """Write the version, as in ``nox -s version -- 0.2.0``, into every place, and what is generated from the texts."""
+    session.run("python", ".ci/release/places.py", *session.posargs)
+    install(session, "-e", ".[test]")
+    for module in ("irsim.lookup.reference", "tests.evals.texts"):
+        timed(session, module, "python", "-m", module)
+
+
 @nox.session(reuse_venv=True, python=find_python(NEWEST))
 def evals(session: nox.Session) -> None:
     """Models as agents: inspect_ai against a stand-in of a model's service, recordings and their replay."""
@@ -303,8 +293,8 @@ def learn(session: nox.Session) -> None:
 def interop(session: nox.Session) -> None:
     """Bridges, each against software that somebody else wrote; a test that is skipped fails."""
     extras = "ros2,zenoh,rosbridge,bag,mujoco,usd,mesh,plans,carla,scenarios,records"
-    install(session, "-e", f".[test,{extras}]", PLAYWRIGHT, *PYTHON_PEERS)
-    install_debian(session, DEBIAN_PEERS)
+    install(session, "-e", f".[test,{extras}]", PLAYWRIGHT, *PEERS["python"])
+    install_debian(session, PEERS["debian"])
     peers = {"IRSIM_INTEROP": "required", "IRSIM_SPARK": install_npm(session, NPM_PEERS)}
     options = ("-m", "interop", "-n", "2", "--dist", "loadgroup", "--durations", "15")
     timed(session, "tests of bridges", "pytest", *options, *session.posargs, env=peers)

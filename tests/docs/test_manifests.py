@@ -249,7 +249,7 @@ def test_server_json_follows_the_registrys_rules() -> None:
         *("$schema", "name", "title", "description", "version", "repository", "websiteUrl", "icons", "packages"),
         *("remotes", "_meta"),
     }
-    assert re.fullmatch(r"\d+\.\d+\.\d+", SERVER["version"])  # exact: no range, not "latest"
+    assert re.fullmatch(r"\d+\.\d+\.\d+(rc\d+)?", SERVER["version"])  # exact: no range, not "latest"
     assert SERVER["version"] == __version__
 
 
