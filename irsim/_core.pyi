@@ -1438,8 +1438,9 @@ class Painter:
         width: float,
         join: str,
         round_caps: bool,
+        dashes: Sequence[float] = ...,
     ) -> None:
-        """Paint a line through points (N, 2)."""
+        """Paint a line through points (N, 2); `dashes` are lengths of dashes and of the gaps after them [px]."""
 
     def beams(
         self,

@@ -151,8 +151,7 @@ class Saving:
         self._keep_options(options)
         plot = self._plot
         kwargs, crop = plot.saved_figure_kwargs, self.recording.crop
-        cut = kwargs.get("bbox_inches") == "tight"
-        if crop is not None and cut and _is_quick(kwargs, plot.made_figure().figure.dpi):
+        if crop is not None and _is_quick(kwargs, plot.made_figure().figure.dpi):
             figure = plot.synced_figure()
             with plot.as_shown():
                 figure.draw()

@@ -83,7 +83,7 @@ Ink ink_of(const InkTuple& color) {
 const Vec2* points_of(const PointArray& points) { return reinterpret_cast<const Vec2*>(points.data()); }
 
 LineStyle style_of(double width, const std::string& join, bool round_caps) {
-  return {width, join == "round" ? Join::kRound : join == "bevel" ? Join::kBevel : Join::kMiter, round_caps};
+  return {width, join == "round" ? Join::kRound : join == "bevel" ? Join::kBevel : Join::kMiter, round_caps, {}};
 }
 
 /// A painter for pictures of one size, whose clip box lies within them.
@@ -166,12 +166,16 @@ void bind_pictures(nb::module_& m) {
       .def(
           "line",
           [](BoundPainter& self, const PixelArray& pixels, const PointArray& points, const InkTuple& edge, double width,
-             const std::string& join, bool round_caps) {
-            self.painter.line(self.own(pixels), points_of(points), points.shape(0), ink_of(edge),
-                              style_of(width, join, round_caps));
+             const std::string& join, bool round_caps, const std::vector<double>& dashes) {
+            LineStyle style = style_of(width, join, round_caps);
+            if (dashes.size() % 2 != 0 ||
+                std::any_of(dashes.begin(), dashes.end(), [](double d) { return !(d > 0.0); }))
+              throw nb::value_error("dashes and gaps must be pairs of positive lengths");
+            style.dashes = dashes;
+            self.painter.line(self.own(pixels), points_of(points), points.shape(0), ink_of(edge), style);
           },
           nb::arg("pixels"), nb::arg("points"), nb::arg("edge"), nb::arg("width"), nb::arg("join"),
-          nb::arg("round_caps"))
+          nb::arg("round_caps"), nb::arg("dashes") = std::vector<double>{})
       .def(
           "beams",
           [](BoundPainter& self, const PixelArray& pixels, std::pair<double, double> origin, const PointArray& ends,

@@ -97,7 +97,11 @@ void Painter::line(const Pixels& pixels, const Vec2* points, std::size_t count, 
   Raster& raster = raster_for(clip_);
   std::vector<Vec2> corners = seen(points, count);
   snap(corners, false, style.width);
-  add_stroke(raster, corners, false, style);
+  if (style.dashes.empty()) {
+    add_stroke(raster, corners, false, style);
+  } else {
+    add_dashes(raster, corners, style);
+  }
   paint(raster, pixels, edge);
 }
 

@@ -109,6 +109,33 @@ void add_stroke(Raster& raster, const std::vector<Vec2>& points, bool closed, co
   add_fan(raster, path.back(), Vec2{last.y, -last.x} * half, kPi);
 }
 
+void add_dashes(Raster& raster, const std::vector<Vec2>& points, const LineStyle& style) {
+  if (points.size() < 2) return;
+  std::size_t entry = 0;  // of the pattern; even ones are dashes
+  double rest = style.dashes[0];
+  std::vector<Vec2> dash;
+  dash.push_back(points.front());
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    Vec2 from = points[i - 1];
+    double length = norm(points[i] - from);
+    while (length > rest) {
+      from = from + (points[i] - from) * (rest / length);
+      length -= rest;
+      if (entry % 2 == 0) {
+        dash.push_back(from);
+        add_stroke(raster, dash, false, style);
+      }
+      dash.clear();
+      dash.push_back(from);
+      entry = (entry + 1) % style.dashes.size();
+      rest = style.dashes[entry];
+    }
+    rest -= length;
+    dash.push_back(points[i]);
+  }
+  if (entry % 2 == 0 && dash.size() > 1) add_stroke(raster, dash, false, style);
+}
+
 bool snap(std::vector<Vec2>& points, bool closed, double width) {
   const std::size_t count = points.size();
   if (count > kMostSnapped) return false;

@@ -14,6 +14,7 @@ struct LineStyle {
   double width = 1;  ///< [px]
   Join join = Join::kMiter;
   bool round_caps = false;
+  std::vector<double> dashes{};  ///< lengths of dashes and of the gaps after them [px]; empty for a solid line
 };
 
 /// Collect a disc.
@@ -24,6 +25,9 @@ void add_ring(Raster& raster, Vec2 center, double radius, double width);
 
 /// Collect the stroke of a line, or of a polygon if it is closed.
 void add_stroke(Raster& raster, const std::vector<Vec2>& points, bool closed, const LineStyle& style);
+
+/// Collect the dashes of a line; their pattern must have positive lengths, and as many dashes as gaps.
+void add_dashes(Raster& raster, const std::vector<Vec2>& points, const LineStyle& style);
 
 /// Move the corners of an outline whose edges all run along the axes to whole pixels, as Agg does, so that it is sharp.
 /// Return whether it was such an outline.

@@ -8,7 +8,7 @@ from typing import Any
 
 from irsim.components.maps._grid import shades
 from irsim.graphics.figure import window
-from irsim.graphics.figure.layers import FogLayer, GridLayer
+from irsim.graphics.figure.image_layers import FogLayer, GridLayer
 from irsim.graphics.scene.scene import Fog, GridImage
 from irsim.objects.drawing.scene_builder import MODES
 from irsim.objects.views import views

@@ -15,7 +15,7 @@ from matplotlib.text import Text
 from matplotlib.transforms import Affine2D
 
 from irsim.graphics.figure.canvas import geometry_path, rgba
-from irsim.graphics.figure.layers import GridLayer
+from irsim.graphics.figure.image_layers import GridLayer
 from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.scene.scene import Dots, GridImage, Label, Line, Mark, Picture
 

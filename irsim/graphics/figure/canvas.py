@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from irsim import _core as core
 from irsim.common.arrays import Floats
+from irsim.graphics.figure.dashes import SOLID, outline
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Sector, Segments, Spots, Stroke
 from irsim.graphics.scene.style import Color
 
@@ -81,6 +83,7 @@ class Canvas:
 
 _UNIT_CIRCLE = Path.unit_circle()
 _TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
+_KNOWN_COLORS = 2048
 _GLOW_RINGS = 12
 """Number of polygons that stand for a glow in vector graphics."""
 
@@ -92,8 +95,11 @@ def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
         ValueError: The colour is not valid.
     """
     given: Any = color
-    red, green, blue, opacity = to_rgba(given)
+    red, green, blue, opacity = _levels(color) if isinstance(color, str) and color[:1] == "#" else to_rgba(given)
     return red, green, blue, opacity * float(alpha)
+
+
+_levels = lru_cache(maxsize=_KNOWN_COLORS)(to_rgba)
 
 
 def paint(
@@ -104,7 +110,7 @@ def paint(
     points_per_metre: float,
     ends: tuple[str, str],
 ) -> None:
-    """Paint marks with solid strokes.
+    """Paint marks whose strokes are solid, or have few dashes.
 
     Args:
         canvas: The canvas, which tells the view and notes what was painted.
@@ -122,7 +128,12 @@ def paint(
         edge = _TRANSPARENT if stroke.color is None else rgba(stroke.color, mark.alpha)
         width = stroke.width * (per_metre if stroke.metric else per_point)
         face = _TRANSPARENT if fill is None else rgba(fill, mark.alpha)
-        if mark.glow is not None and isinstance(shape, Region):
+        if stroke.style not in SOLID and (path := outline(mark)) is not None:
+            if isinstance(shape, Region) and fill is not None:
+                painter.polygon(pixels, shape.rings[0], face, _TRANSPARENT, 0.0, ends[1])
+            pattern = [length * width for length in stroke.style[1]]
+            painter.line(pixels, path, edge, width, ends[1], ends[0] == "round", pattern)
+        elif mark.glow is not None and isinstance(shape, Region):
             painter.glow(pixels, shape.rings[0], *mark.glow, face)
         elif isinstance(shape, Segments):
             for points in shape.points:

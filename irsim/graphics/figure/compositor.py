@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypeGuard
 
 import matplotlib
 import numpy as np
@@ -117,6 +117,10 @@ class Compositor:
             else:
                 break
             drawn += 1
+        covers = [a for a in artists[drawn:] if _covers(a) and versions[a][1] >= MIN_RESTING_SCENES]
+        for artist in covers:  # covered in the background, and again in frames in which something reaches below them
+            sheets.append(sheet := Resting())
+            sheet.add(artist, versions[artist][0])
         ground, changed = self._background.update(self._furniture, sheets, view)
         if changed is None or self._drawn is None:
             view.pixels[...] = ground
@@ -126,13 +130,18 @@ class Compositor:
             self._note_change([*self._drawn, *changed])
         view.painter.take_boxes()
         view.unknown = False
+        painted = list[Box]()
         for artist in artists[drawn:]:
+            if artist in covers and not view.unknown:
+                painted += view.painter.take_boxes()
+                if not artist.is_reached(view, painted):
+                    continue
             if artist in frame:
                 frame[artist].lay_over(view)
             elif not (isinstance(artist, MarkArtist | Spokes | QuickText) and artist.paint_on(view)):
                 view.unknown = True
                 artist.draw(view.renderer)
-        self._drawn = None if view.unknown else view.painter.take_boxes()
+        self._drawn = None if view.unknown else painted + view.painter.take_boxes()
         self._note_change(self._drawn)
 
     def _note_change(self, boxes: list[Box] | None) -> None:
@@ -230,6 +239,10 @@ class Compositor:
         if crop is not None:
             rgba = rgba[crop[1] : crop[3], crop[0] : crop[2]]
         return rgba
+
+
+def _covers(artist: Artist) -> TypeGuard[MarkArtist]:
+    return isinstance(artist, MarkArtist) and artist.covers
 
 
 def _is_empty(artist: Artist) -> bool:

@@ -17,8 +17,9 @@ from irsim.graphics.figure.background import TrackLayer
 from irsim.graphics.figure.canvas import rgba
 from irsim.graphics.figure.compositor import Compositor
 from irsim.graphics.figure.glyphs import Glyphs, QuickText
+from irsim.graphics.figure.image_layers import FogLayer, GridLayer
 from irsim.graphics.figure.labels import LabelLayer, printable
-from irsim.graphics.figure.layers import BeamLayer, FogLayer, GridLayer, MarkLayer, layer_key
+from irsim.graphics.figure.layers import BeamLayer, MarkLayer, layer_key
 from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.figure.tracks import track_layers
 from irsim.graphics.scene.scene import GridImage, Picture, Scene

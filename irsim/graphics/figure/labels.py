@@ -55,6 +55,7 @@ class LabelLayer:
             [withStroke(linewidth=_HALO_WIDTH_PT, foreground="white")] if halo else []
         )
         self._texts: dict[tuple[int, str], QuickText] = {}
+        self._known: dict[tuple[int, str], Label] = {}
         self._leaders: LineCollection | None = None
         self._extents: dict[tuple[str, float, float], Bounds] = {}
 
@@ -77,6 +78,9 @@ class LabelLayer:
                 self.ax.add_artist(text)
             shown[key] = label, text
             text.set_visible(True)
+            if self._placed and self._known.get(key) == label:
+                continue
+            self._known[key] = label
             text.set_text(printable(label.text))
             text.set_position((label.x, label.y))
             text.set_color(rgba(label.color))

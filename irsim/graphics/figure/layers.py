@@ -9,21 +9,19 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.collections import Collection, PathCollection
-from matplotlib.image import AxesImage
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from irsim.common.arrays import Floats
-from irsim.components.maps._site import HALF, UNKNOWN_AS
-from irsim.graphics.figure.canvas import Canvas, geometry_path, paint, rgba, without_glow
-from irsim.graphics.scene.scene import Beams, Dots, Fog, GridImage, Mark, Scene
+from irsim.graphics.figure.canvas import Box, Canvas, geometry_path, paint, rgba, without_glow
+from irsim.graphics.figure.dashes import SOLID, is_paintable
+from irsim.graphics.scene.bodies import bounds
+from irsim.graphics.scene.scene import Beams, Dots, Mark, Scene
 from irsim.graphics.scene.style import Color
 
 __all__ = [
     "PARTS",
     "BeamLayer",
-    "FogLayer",
-    "GridLayer",
     "MarkArtist",
     "MarkLayer",
     "Spokes",
@@ -31,47 +29,6 @@ __all__ = [
     "layer_key",
     "opaque_colors",
 ]
-
-_ALWAYS_RESTING = 1_000_000
-"""Number of resting scenes given for a map, which never changes."""
-
-
-class GridLayer:
-    """One map.
-
-    Attributes:
-        artist: The image that shows it.
-        version: Number of changes of the content.
-        resting_scenes: Number of consecutive scenes without a change; a map counts as resting from the beginning.
-    """
-
-    def __init__(self, ax: Axes, zorder: float) -> None:
-        self.artist = AxesImage(ax, cmap="gray", norm=None, interpolation="antialiased", origin="lower")
-        self.artist.set_clim(0, 255)
-        self.artist.set_zorder(zorder)
-        ax.add_image(self.artist)
-        self.artist.set_clip_path(ax.patch)
-        self.version, self.resting_scenes = 0, _ALWAYS_RESTING
-        self._shown: GridImage | None = None
-
-    def show(self, grid: GridImage | None) -> None:
-        """Show a map, or nothing for None."""
-        self.artist.set_visible(grid is not None)
-        if grid is self._shown or grid is None:
-            return
-        self._shown = grid
-        self.version += 1
-        if grid.color is None:
-            self.artist.set_data(255 - np.minimum(grid.levels, 100).T * np.float32(2.55))
-        else:
-            cells = np.zeros((*grid.levels.T.shape, 4))
-            if grid.unknown is not None:
-                cells[UNKNOWN_AS["free"] == grid.levels.T] = rgba(grid.unknown)
-            cells[grid.levels.T > HALF] = rgba(grid.color)
-            self.artist.set_data(cells)
-            self.artist.set_interpolation("nearest")
-        self.artist.set_extent(grid.extent)
-
 
 PARTS = (
     *(
@@ -101,8 +58,9 @@ Matplotlib draws artists of equal zorder in the order in which they were added, 
 """
 
 _BEAM_WIDTH_PT = 1.0
+_NEAR_PX = 0.01
+"""Boxes that overlap by less do not reach each other."""
 _TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
-_SOLID = ("-", "solid")
 _OPAQUE = 255.0
 _FAR, _NEAR = 40.0, 3.0
 """Dashed lines that leave the view, made so many times larger, are cut to the view, made so many times larger."""
@@ -114,19 +72,21 @@ def layer_key(part: str, zorder: float, round_caps: bool = False) -> tuple[Any, 
 
 
 class MarkArtist(PathCollection):
-    """Shows marks: painted one by one on a pixel canvas if their strokes are solid, as a collection elsewhere.
+    """Shows marks: painted one by one on a pixel canvas if their strokes allow it, as a collection elsewhere.
 
     Attributes:
         before: Called before the marks are drawn; it may bring them up to date.
         fill: Makes the paths of the collection from the marks.
         marks: The marks.
         scale: Points per metre, for line widths given in metres.
+        covers: Whether the marks hide what reaches out of the world, in whole pixels.
     """
 
     before: Callable[[], None] | None = None
     fill: Callable[[], None]
     marks: Sequence[Mark] = ()
     scale = 0.0
+    covers = False
 
     def draw(self, renderer: Any) -> None:
         """Draw the marks."""
@@ -141,7 +101,7 @@ class MarkArtist(PathCollection):
         super().draw(renderer)
 
     def paint_on(self, canvas: Canvas) -> bool:
-        """Paint the marks if their strokes are solid; return whether that was done."""
+        """Paint the marks if their strokes allow it; return whether that was done."""
         if self.before is not None:
             self.before()
         plain = self._is_plain()
@@ -149,8 +109,20 @@ class MarkArtist(PathCollection):
             self._paint(canvas)
         return plain
 
+    def is_reached(self, canvas: Canvas, boxes: Sequence[Box]) -> bool:
+        """Whether one of the boxes of pixels reaches below the marks."""
+        if not boxes or not self.marks:
+            return False
+        low, high = np.array([bounds(mark.geometry) for mark in self.marks]).reshape(-1, 2, 2).transpose(1, 0, 2)
+        (left, bottom), (right, top) = canvas.to_pixels(low).T, canvas.to_pixels(high).T
+        x0, y0, x1, y1 = np.array(boxes, dtype=np.float64).T[:, :, None]
+        y0, y1 = canvas.height - y1, canvas.height - y0
+        return bool(
+            ((x1 > left + _NEAR_PX) & (x0 < right - _NEAR_PX) & (y1 > bottom + _NEAR_PX) & (y0 < top - _NEAR_PX)).any()
+        )
+
     def _is_plain(self) -> bool:
-        return all(mark.stroke.style in _SOLID for mark in self.marks)
+        return all(is_paintable(mark, self.scale) for mark in self.marks)
 
     def _paint(self, canvas: Canvas) -> None:
         if self.marks:
@@ -173,6 +145,7 @@ class MarkLayer:
         joins = "round" if key[1] == PARTS.index("trajectory") else joins
         self.artist = MarkArtist([], capstyle=caps, joinstyle=joins, zorder=key[0] + ZORDER_STEP * key[1])
         self.artist.fill = self._fill
+        self.artist.covers = key[1] == PARTS.index("frame")
         ax.add_collection(self.artist, autolim=False)
         self.version = self.resting_scenes = 0
         self._filled: list[Mark] = []
@@ -202,7 +175,7 @@ class MarkLayer:
         self._filled = marks
         self._paths[same:] = [geometry_path(mark.geometry) for mark in marks[same:]]
         pairs = zip(self._paths, marks, strict=True)
-        artist.set_paths([p if mark.stroke.style in _SOLID else _near_view(p, artist.axes) for p, mark in pairs])
+        artist.set_paths([p if mark.stroke.style in SOLID else _near_view(p, artist.axes) for p, mark in pairs])
         artist.set_facecolor(_colors([mark.fill for mark in marks], [mark.alpha for mark in marks]))
         artist.set_edgecolor(_colors([mark.stroke.color for mark in marks], [mark.alpha for mark in marks]))
         widths = [mark.stroke.width * (scale if mark.stroke.metric else 1.0) for mark in marks]
@@ -277,31 +250,6 @@ class BeamLayer:
         self.artist.remove()
         if self._dots is not None:
             self._dots.remove()
-
-
-class FogLayer:
-    """The fog as an image over the world, updated only when more cells have been explored.
-
-    Attributes:
-        artist: The image.
-    """
-
-    def __init__(self, ax: Axes, zorder: float) -> None:
-        self.artist = AxesImage(ax, interpolation="nearest", origin="lower", zorder=zorder)
-        self.artist.set_clip_path(ax.patch)
-        ax.add_image(self.artist)
-        self._shown: Any = None
-
-    def show(self, fog: Fog) -> None:
-        """Show the fog."""
-        if self._shown is not None and np.array_equal(self._shown, fog.explored):
-            return
-        self._shown = fog.explored
-        color = np.array([round(255 * level) for level in rgba(fog.color, fog.alpha)], dtype=np.uint8)
-        pixels = np.tile(color, (*fog.explored.T.shape, 1))
-        pixels[fog.explored.T, 3] = 0
-        self.artist.set_data(pixels)
-        self.artist.set_extent(fog.extent)
 
 
 class Spokes(Collection):

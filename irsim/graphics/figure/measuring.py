@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextToPath
 
@@ -9,6 +11,8 @@ __all__ = ["TextSizes"]
 
 MAX_KNOWN = 5000
 _SIZE = 100.0
+_DIGITS = re.compile(r"[1-9]")
+"""All digits are as wide as a zero."""
 
 
 class TextSizes:
@@ -20,13 +24,13 @@ class TextSizes:
 
     def width(self, text: str, size: float, *, bold: bool = False, italic: bool = False) -> float:
         """Width of a text in the unit of its size."""
-        key = text, bold, italic
+        key = _DIGITS.sub("0", text), bold, italic
         if key not in self._known:
             if len(self._known) >= MAX_KNOWN:
                 self._known.clear()
             font = FontProperties(
                 size=_SIZE, weight="bold" if bold else "normal", style="italic" if italic else "normal"
             )
-            width, _, _ = self._paths.get_text_width_height_descent(text, font, False)
+            width, _, _ = self._paths.get_text_width_height_descent(key[0], font, False)
             self._known[key] = float(width) / _SIZE
         return self._known[key] * size

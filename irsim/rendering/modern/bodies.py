@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -138,6 +139,7 @@ def _wheels(thing: Thing, layout: Layout, theme: Theme, alpha: float) -> list[Ma
     return marks
 
 
+@lru_cache(maxsize=256)
 def _ellipse(x: float, along: float, across: float) -> Region:
     angles = np.linspace(0, 2 * math.pi, _POINTS, endpoint=False)
     return Region([np.stack([x + along * np.cos(angles), across * np.sin(angles)], axis=1)])

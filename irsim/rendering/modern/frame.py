@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 
-from irsim.graphics.scene.scene import Label, Line, Mark, Region, Stroke
+from irsim.graphics.scene.scene import Bounds, Label, Line, Mark, Region, Stroke
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern.layout import POINTS_PER_U, Layout, nice_length, nice_part
 
@@ -22,6 +23,7 @@ _MIN_TICK = 40.0
 """Where lines of the grid are closer together, every second one has its coordinate [u]."""
 
 
+@lru_cache(maxsize=1024)
 def stroke(color: str | None, width: float, style: object = "-") -> Stroke:
     """A stroke with round ends; its width is in u."""
     return Stroke(color, width * POINTS_PER_U, style=style, round_caps=True)
@@ -70,22 +72,24 @@ def ground_marks(layout: Layout, theme: Theme, *, walls: bool) -> list[Mark]:
 
 
 def frame_marks(layout: Layout, theme: Theme) -> list[Mark]:
-    """The page over everything that reaches out of the world."""
+    """The page over everything that reaches out of the world, in whole pixels."""
     x0, x1, y0, y1 = layout.world
-    left, right, bottom, top = layout.extent
-    out = layout.metres(layout.sizes.wall / 2)
+    corners = layout.places(np.array([(x0, y0), (x1, y1)])) * layout.ratio
+    out = layout.sizes.wall / 2 * layout.ratio
+    (x0, y0), (x1, y1) = np.floor(corners[0] - out), np.ceil(corners[1] + out)
+    right, top = layout.size
     page = page_color(layout, theme)
-    strips = [
-        (left, bottom, right, y0 - out),
-        (left, y1 + out, right, top),
-        (left, bottom, x0 - out, top),
-        (x1 + out, bottom, right, top),
-    ]
+    strips = [(0, 0, right, y0), (0, y1, right, top), (0, y0, x0, y1), (x1, y0, right, y1)]
     return [
-        Mark(FRAME, "frame", rectangle(*strip), page, Stroke(None), 1.0, _PAGE_Z)
+        Mark(FRAME, "frame", _of_pixels(strip, layout), page, Stroke(None), 1.0, _PAGE_Z)
         for strip in strips
         if strip[0] < strip[2] and strip[1] < strip[3]
     ]
+
+
+def _of_pixels(box: Bounds, layout: Layout) -> Region:
+    left, bottom, right, top = (value / layout.ratio for value in box)
+    return rectangle(*layout.at(left, bottom), *layout.at(right, top))
 
 
 def page_color(layout: Layout, theme: Theme) -> str:

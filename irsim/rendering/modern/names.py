@@ -23,6 +23,10 @@ _GAPS = (4.0, 14.0, 26.0)
 """Distances of a name from its thing [u]; the farther ones have a line to it."""
 _GAP_COST = (0.0, 0.3, 0.6)
 _WALL_COST, _PLAN_COST, _TRAIL_COST, _ORDER_COST = 0.15, 0.12, 0.06, 0.01
+_LINE_COSTS = (("plan", _PLAN_COST), ("trajectory", _TRAIL_COST))
+_PLACES = 8
+"""Number of places around a thing, at each distance."""
+_PLACE_COSTS = np.repeat(_GAP_COST, _PLACES) + _ORDER_COST * np.tile(np.arange(_PLACES), len(_GAPS))
 _HALO, _LEADER = 2.6, 0.9
 _ASCENT, _DESCENT = 0.76, 0.22
 """Height of a text above and below its line, as shares of its size."""
@@ -83,7 +87,7 @@ def place_names(
     taken = [_box(mark, layout) for mark in marks if mark.part in _TAKEN or _is_moving(mark)]
     taken += [_text_box(one, layout, sizes) for one in fixed]
     walls = np.array([_box(m, layout) for m in marks if m.part == "body" and not _is_moving(m)]).reshape(-1, 4)
-    plans, trails = (_points(marks, part, layout) for part in ("plan", "trajectory"))
+    lines = [(cost, _points(marks, part, layout)) for part, cost in _LINE_COSTS]
     x0, x1, y0, y1 = layout.world
     low, high = layout.places(np.array([(x0, y0), (x1, y1)]))
     leaders, labels, dropped = list[Mark](), list[Label](), 0
@@ -96,14 +100,8 @@ def place_names(
         if not free.any():
             dropped += 1
             continue
-        cost = (
-            np.repeat(_GAP_COST, len(places) // len(_GAPS))
-            + _ORDER_COST * np.tile(np.arange(len(places) // len(_GAPS)), len(_GAPS))
-            + _WALL_COST * _overlaps(places, walls).any(axis=1)
-            + _PLAN_COST * _holds(places, plans)
-            + _TRAIL_COST * _holds(places, trails)
-        )
-        chosen = int(np.where(free, cost, np.inf).argmin())
+        cost = _PLACE_COSTS + _WALL_COST * _overlaps(places, walls).any(axis=1)
+        chosen = _cheapest(places, np.where(free, cost, np.inf), lines)
         box = places[chosen]
         taken.append((float(box[0]), float(box[1]), float(box[2]), float(box[3])))
         place = layout.at(float(box[0]), float(box[1]) + _DESCENT * size)
@@ -111,9 +109,23 @@ def place_names(
         labels.append(
             label(wish.number, wish.part, place, wish.text, wish.color, size, zorder=_NAME_Z, bold=True, halo=halo)
         )
-        if wish.leads and chosen >= len(places) // len(_GAPS):
+        if wish.leads and chosen >= _PLACES:
             leaders.append(_leader(wish, box, layout))
     return leaders, labels, dropped
+
+
+def _cheapest(places: Floats, cost: Floats, lines: Sequence[tuple[float, Floats]]) -> int:
+    """The place of least cost, with what it costs to lie over lines; dear places are not compared with lines."""
+    chosen, least = 0, np.inf
+    for number in np.argsort(cost, kind="stable").tolist():
+        if cost[number] >= least:
+            break
+        whole = float(cost[number])
+        for price, points in lines:
+            whole += price * _holds(places[number], points)
+        if whole < least:
+            chosen, least = number, whole
+    return chosen
 
 
 def _places(wish: Wish, layout: Layout, width: float, size: float) -> Floats:
@@ -169,24 +181,23 @@ def _text_box(one: Label, layout: Layout, sizes: TextSizes) -> tuple[float, floa
 
 def _points(marks: Sequence[Mark], part: str, layout: Layout) -> Floats:
     """Points along lines, so close together that a text hardly lies between two of them [u]."""
-    places = [np.empty((0, 2))]
-    for mark in marks:
-        if mark.part != part or not isinstance(mark.geometry, Line) or mark.zorder < _LEAST_LINE_Z:
-            continue
-        points = layout.places(mark.geometry.points)
-        if part == "plan":  # its corners are far apart
-            along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-            at = np.linspace(0.0, along[-1], 2 + int(along[-1] / _SPREAD))
-            points = np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1)
-        places.append(points)
+    lines = [
+        m.geometry.points for m in marks if m.part == part and m.zorder >= _LEAST_LINE_Z and type(m.geometry) is Line
+    ]
+    if not lines or part != "plan":
+        return layout.places(np.concatenate([np.empty((0, 2)), *lines]))
+    places = list[Floats]()
+    for points in map(layout.places, lines):
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])  # corners are far apart
+        at = np.linspace(0.0, along[-1], 2 + int(along[-1] / _SPREAD))
+        places.append(np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1))
     return np.concatenate(places)
 
 
-def _holds(boxes: Floats, points: Floats) -> Floats:
-    """(N,) whether a box contains one of the points."""
-    x, y = points[:, 0], points[:, 1]
-    inside = (x > boxes[:, :1]) & (x < boxes[:, 2:3]) & (y > boxes[:, 1:2]) & (y < boxes[:, 3:])
-    return np.asarray(inside.any(axis=1), dtype=np.float64)
+def _holds(box: Floats, points: Floats) -> bool:
+    """Whether a box contains one of the points."""
+    inside = (points > box[:2]) & (points < box[2:])
+    return bool((inside[:, 0] & inside[:, 1]).any())
 
 
 def _overlaps(some: Floats, others: Floats) -> NDArray[np.bool_]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -83,21 +82,20 @@ def scan_marks(beams: Beams, thing: Thing, layout: Layout, theme: Theme, *, scan
     return marks
 
 
-def fov_marks(shapes: Sequence[Mark], thing: Thing, theme: Theme) -> list[Mark]:
+def fov_marks(shape: Mark, thing: Thing, theme: Theme) -> list[Mark]:
     """A field of view, which fades with the distance, with a dashed edge."""
     plot = thing.view.record.plot
     chosen = plot.fov_color if "fov_color" in plot.model_fields_set else None
     color = seen(chosen, theme.paper, theme.least_edge) if chosen is not None else theme.near
     color = thing.shades.edge if chosen is None and thing.kind == "robot" else color
     edge = stroke(color, 1.0, _FOV_DASHES)
-    marks = list[Mark]()
-    for shape in shapes:
-        ring = _ring_of(shape)
-        reach = 1.0001 * float(np.hypot(*(ring - thing.drawn_at[:2]).T).max())
-        glow = (*thing.drawn_at[:2], reach / 0.9)  # the rim stays visible: it is the edge of the view
-        marks.append(Mark(thing.number, "fov", Region([ring]), color, Stroke(None), _FOV_ALPHA, _FOV_Z, glow))
-        marks.append(Mark(thing.number, "fov", Region([ring]), None, edge, _FOV_EDGE_ALPHA, _FOV_Z + 0.01))
-    return marks
+    ring = _ring_of(shape)
+    reach = 1.0001 * float(np.hypot(*(ring - thing.drawn_at[:2]).T).max())
+    glow = (*thing.drawn_at[:2], reach / 0.9)  # the rim stays visible: it is the edge of the view
+    return [
+        Mark(thing.number, "fov", Region([ring]), color, Stroke(None), _FOV_ALPHA, _FOV_Z, glow),
+        Mark(thing.number, "fov", Region([ring]), None, edge, _FOV_EDGE_ALPHA, _FOV_Z + 0.01),
+    ]
 
 
 def _ring_of(mark: Mark) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,6 +27,7 @@ BUILD_KEYS = {
     "show_trail": None,
 }
 """Plot keys with which a scene is built for this style, which draws these parts itself."""
+Parts = tuple[list[Mark], list[Label]]
 _ADDED_Z = 5.4
 _GHOST = (0, (1.0, 2.0))
 USER_ZORDER = 3.0
@@ -88,6 +89,7 @@ class ModernStyle:
         self._still: dict[int, tuple[Mark | None, bool, list[Mark]]] = {}
         self._maps: dict[int, tuple[GridImage, GridImage, list[Mark]]] = {}
         self._fog: tuple[Any, list[Mark]] = (None, [])
+        self._parts: dict[tuple[Any, ...], Parts] = {}
 
     def draw(self, scene: Scene, builder: SceneBuilder, layout: Layout, request: Request) -> Scene:
         """Return the picture of a scene.
@@ -110,8 +112,10 @@ class ModernStyle:
         marks, labels = list(self._ground), list[Label]()
         grids = self._add_maps(scene, marks)
         if request.zones:
-            zone_marks, labels = ground.zone_parts(simulation.scenario.world.zones, layout, theme)
+            zones = simulation.scenario.world.zones
+            zone_marks, zone_labels = self._same(("zones",), lambda: ground.zone_parts(zones, layout, theme))
             marks += zone_marks
+            labels += zone_labels
         fog = None if scene.fog is None else ground.shown_fog(scene.fog, theme)
         if scene.fog is not None:
             marks += self._hatch(scene, layout)
@@ -130,7 +134,7 @@ class ModernStyle:
         for thing in things:
             if thing.kind == "robot" and thing.shown:
                 marks += signs.state_marks(thing, layout, theme, level=crowd.level)
-        labels += frame.axis_labels(layout, theme) if request.axes else []
+        labels += self._same(("axes",), lambda: ([], frame.axis_labels(layout, theme)))[1] if request.axes else []
         wishes = _wishes(things, own, crowd, layout, theme) if request.names else []
         leaders, named, dropped = names.place_names(wishes, marks, labels, layout, theme, self.sizes)
         marks += leaders
@@ -140,8 +144,13 @@ class ModernStyle:
         velocities = any(sensing.measures_velocity(beams, by_number[beams.object]) for beams in scene.beams)
         parts = [self._heading(scene, things, crowd, sum(e.kind == "collision" for e in own), layout, request)]
         if layout.sizes.kind != "strip":
-            parts.append(frame.foot(layout, theme))
-            parts.append(heading.legend_parts(layout, theme, self.sizes, beads=beads, velocities=velocities))
+            parts.append(self._same(("foot",), lambda: frame.foot(layout, theme)))
+            parts.append(
+                self._same(
+                    ("legend", beads, velocities),
+                    lambda: heading.legend_parts(layout, theme, self.sizes, beads=beads, velocities=velocities),
+                )
+            )
         for more_marks, more_labels in parts:
             marks += more_marks
             labels += more_labels
@@ -164,8 +173,15 @@ class ModernStyle:
         self._ground = frame.ground_marks(layout, self.theme, walls=walls)
         self._page = frame.frame_marks(layout, self.theme)
         self._still.clear()
+        self._parts.clear()
         self._maps.clear()
         self._fog = (None, [])
+
+    def _same(self, key: tuple[Any, ...], make: Callable[[], Parts]) -> Parts:
+        """Marks and labels that stay the same objects as long as the layout does."""
+        if key not in self._parts:
+            self._parts[key] = make()
+        return self._parts[key]
 
     def _add_maps(self, scene: Scene, marks: list[Mark]) -> list[GridImage]:
         grids = []
@@ -206,9 +222,9 @@ class ModernStyle:
     def _views(self, scene: Scene, by_number: Mapping[int, Thing], crowd: Crowd, layout: Layout) -> list[Mark]:
         """Fields of view and scans."""
         marks = list[Mark]()
-        for thing in by_number.values():
-            shapes = [mark for mark in scene.marks if mark.part == "fov" and mark.object == thing.number]
-            marks += sensing.fov_marks(shapes, thing, self.theme)
+        for shape in scene.marks:
+            if shape.part == "fov":
+                marks += sensing.fov_marks(shape, by_number[shape.object], self.theme)
         scans = len(scene.beams)
         for beams in scene.beams:
             thing = by_number[beams.object]

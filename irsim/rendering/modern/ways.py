@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import place
@@ -73,22 +75,19 @@ def trail_marks(
     if len(states) < 2:
         return []
     points, color = trajectory_points(thing.body, states), thing.shades.edge
-    ages, fade = (_AGES, _TRAIL_FADE_S) if robot else (_PERSON_AGES, _PERSON_FADE_S)
-    newest, oldest = layout.sizes.trail if robot else (2.0, 1.2)
+    widths, zorder = (layout.sizes.trail, _TRAIL_Z) if robot else ((2.0, 1.2), _PERSON_TRAIL_Z)
     marks, last = list[Mark](), len(points) - 1
-    for young, old in zip(ages[-2::-1], ages[:0:-1], strict=True):  # the oldest first
+    kept = _spread(points, layout.metres(_STEP)) if robot else None
+    for young, old, tint in _tints(color, theme.paper, robot, widths, robot and level > 0):
         end = last - round(young / period)
         begin = 0 if math.isinf(old) else max(0, last - round(old / period))
         if end <= begin:
             continue
-        rest = math.exp(-young / fade)
-        share = 0.32 + 0.60 * rest if robot else 0.02 + 0.38 * rest
-        width = oldest + (newest - oldest) * rest
-        width *= _CROWDED_WIDTH if robot and level else 1.0
-        part = points[begin : end + 1]
-        line = Line(_thinned(part, layout.metres(_STEP)) if robot else part)
-        tint = stroke(mix(color, theme.paper, share), width)
-        zorder = _TRAIL_Z if robot else _PERSON_TRAIL_Z
+        if kept is None:
+            line = Line(points[begin : end + 1])
+        else:
+            first_inside, after = kept.searchsorted((begin + 1, end))
+            line = Line(points[np.array([begin, *kept[first_inside:after], end])])
         marks.append(Mark(thing.number, "trajectory", line, None, tint, 1.0, zorder))
     every = round(_BEAD_S / period)
     if beads and every and first == 0 and last > every:
@@ -97,18 +96,27 @@ def trail_marks(
     return marks
 
 
-def _thinned(points: Floats, least: float) -> Floats:
-    """Leave out points of a line that are closer to the one before than can be seen; the ends stay."""
-    if len(points) < 3:
-        return points
+@lru_cache(maxsize=512)
+def _tints(
+    color: str, paper: str, robot: bool, widths: tuple[float, float], crowded: bool
+) -> list[tuple[float, float, Stroke]]:
+    """Least age, greatest age [s] and stroke of the parts of a trail, the oldest first."""
+    ages, fade = (_AGES, _TRAIL_FADE_S) if robot else (_PERSON_AGES, _PERSON_FADE_S)
+    newest, oldest = widths
+    tints = []
+    for young, old in zip(ages[-2::-1], ages[:0:-1], strict=True):
+        rest = math.exp(-young / fade)
+        share = 0.32 + 0.60 * rest if robot else 0.02 + 0.38 * rest
+        width = (oldest + (newest - oldest) * rest) * (_CROWDED_WIDTH if crowded else 1.0)
+        tints.append((young, old, stroke(mix(color, paper, share), width)))
+    return tints
+
+
+def _spread(points: Floats, least: float) -> NDArray[np.int64]:
+    """Indices of points of a trail of which no two in a row are closer than can be seen; counted from its start."""
     steps = points[1:] - points[:-1]
-    length = np.cumsum(np.hypot(steps[:, 0], steps[:, 1])) // least
-    kept = np.ones(len(points), dtype=bool)
-    kept[1] = length[0] > 0
-    kept[2:] = length[1:] > length[:-1]
-    kept[-1] = True
-    thinned: Floats = np.ascontiguousarray(points[kept])
-    return thinned
+    bins = np.cumsum(np.hypot(steps[:, 0], steps[:, 1])) // least
+    return np.flatnonzero(np.diff(bins, prepend=0.0)) + 1
 
 
 def remaining_goals(thing: Thing, simulation: Simulation) -> list[Floats]:
@@ -119,6 +127,8 @@ def remaining_goals(thing: Thing, simulation: Simulation) -> list[Floats]:
     present = simulation.goal[thing.view.row][:3]
     if math.isnan(present[0]) or simulation.scenario.is_parked(thing.view.record):
         return []
+    if len(goals) == 1:
+        return [np.asarray(present, dtype=np.float64)]
     index = next((i for i, goal in enumerate(goals) if np.allclose(goal[:2], present[:2])), len(goals))
     later = [np.array([*goal[:3], math.nan][:3], dtype=np.float64) for goal in goals[index + 1 :]]
     return [np.asarray(present, dtype=np.float64), *later]

@@ -12,6 +12,7 @@ from PIL import Image, ImageSequence
 
 import irsim
 from irsim.bundled import templates
+from irsim.graphics.figure import dashes
 from irsim.graphics.figure.measuring import TextSizes
 from irsim.graphics.scene.bodies import bounds
 from irsim.graphics.scene.scene import Circle
@@ -168,6 +169,28 @@ def test_the_same_picture_at_another_resolution_differs_only_in_that(opened: Ope
     half = images[0].width // 2, images[0].height // 2
     one, other = (np.asarray(image.resize(half, Image.Resampling.BOX), float).ravel() for image in images)
     assert np.corrcoef(one, other)[0, 1] > 0.95
+
+
+@pytest.mark.parametrize("name", ["crossing", "warehouse"])
+def test_a_frame_is_the_picture_that_is_drawn_alone(opened: Opened, name: str) -> None:
+    followed, alone = opened(name), opened(name)
+    for _ in range(12):
+        frame = np.asarray(followed._env_plot.frame())
+        take(followed, 1)
+    frame = np.asarray(followed._env_plot.frame())
+    take(alone, 12)
+    apart = np.abs(frame.astype(int) - np.asarray(alone._env_plot.frame()))
+    assert apart.max() <= 2
+
+
+def test_dashes_are_painted_as_matplotlib_draws_them(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
+    env = opened("warehouse")
+    painted, _ = pixels_of(env)
+    monkeypatch.setattr(dashes, "MAX_DASHES", -1)
+    drawn, _ = pixels_of(env)
+    apart = np.abs(painted.astype(int) - drawn)
+    assert apart.max() <= 24, "round ends of dashes may differ by some levels"
+    assert apart.mean() < 0.02
 
 
 @pytest.mark.parametrize("theme", THEMES)
