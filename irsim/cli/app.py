@@ -1,7 +1,7 @@
 """The application: its commands in the order of ``irsim --help``, each loaded when it is used.
 
-The first sentence of a command's docstring is its help and its row in the README. Exit codes are 0 (finished), 1 (could
-not finish) and 2 (invalid input).
+The first sentence of a command's docstring is its help, and what ``irsim --help`` says of it. Exit codes are 0
+(finished), 1 (could not finish) and 2 (invalid input).
 """
 
 from __future__ import annotations

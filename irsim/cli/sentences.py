@@ -1,5 +1,5 @@
 # ruff: noqa: E501
-"""First sentences of the commands; ``python -m irsim.cli.overview README.md`` writes this file."""
+"""First sentences of the commands; ``python -m irsim.cli.overview`` writes this file."""
 
 SENTENCES = {
     "demo": "Simulate a bundled scenario and write an animation of it to the current directory.",

@@ -42,7 +42,7 @@ COPILOT = load(".github/plugin/marketplace.json")
 CODEX, GEMINI = load(".codex-plugin/plugin.json"), load("gemini-extension.json")
 BUNDLE = load("mcp_server/bundle/manifest.json")
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-SECTION = README.partition("## For agents\n")[2].partition("\n## ")[0]
+AGENTS = (ROOT / ".ci/site/hand/agents.md").read_text(encoding="utf-8")
 TOOLS = {"lookup", "validate_scenario", "render_snapshot", "run_episode", "inspect_run", "benchmark", "get_job"}
 SCRIPTS = "/path/to/irsim/.venv/bin"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -171,8 +171,8 @@ def test_claude_accepts_the_plugin(path: str, tmp_path: Path) -> None:
     validated(shutil.which("claude"), "plugin", "validate", "--strict", path, home=tmp_path)
 
 
-def test_claude_installs_the_plugin_by_the_readmes_commands(tmp_path: Path) -> None:
-    commands = re.findall(r"`claude (plugin [^`]+)`", README)
+def test_claude_installs_the_plugin_by_the_commands_of_the_page(tmp_path: Path) -> None:
+    commands = re.findall(r"`claude (plugin [^`]+)`", AGENTS)
     assert len(commands) == 2
     for command in commands:
         words = command.replace("/path/to/irsim", str(ROOT)).split()
@@ -180,7 +180,7 @@ def test_claude_installs_the_plugin_by_the_readmes_commands(tmp_path: Path) -> N
 
 
 def blocks(language: str) -> list[str]:
-    return re.findall(rf"^ *```{language}\n(.*?)^ *```", SECTION, re.DOTALL | re.MULTILINE)
+    return re.findall(rf"^ *```{language}\n(.*?)^ *```", AGENTS, re.DOTALL | re.MULTILINE)
 
 
 def configurations() -> list[dict[str, Any]]:
@@ -191,9 +191,9 @@ def configurations() -> list[dict[str, Any]]:
 
 def test_each_host_has_a_block_and_each_skill_a_link() -> None:
     for host in ("Claude Code", "Claude Desktop", "Cursor", "Codex", "VS Code"):
-        assert host in SECTION
+        assert host in AGENTS
     for page in (ROOT / "skills").glob("*/SKILL.md"):
-        assert f"({page.relative_to(ROOT).as_posix()})" in SECTION
+        assert f"(../{page.relative_to(ROOT).as_posix()})" in AGENTS
     assert f"<!-- mcp-name: {SERVER['name']} -->" in README  # shows the registry that the package is ours
     keys = [next(iter(json.loads(block))) for block in blocks("json")]
     assert keys == ["mcpServers", "servers"]
@@ -224,15 +224,15 @@ def test_the_command_of_each_block_starts_a_server_that_answers(tmp_path: Path, 
 
 
 def test_the_tools_are_named_and_the_published_form_is_called_future() -> None:
-    assert set(re.findall(r"`(\w+)`", SECTION)) >= TOOLS
-    later = SECTION.partition("Once the package is published")[2].partition("\n\n")[0]
+    assert set(re.findall(r"`(\w+)`", AGENTS)) >= TOOLS
+    later = AGENTS.partition("Once the package is published")[2].partition("\n\n")[0]
     assert "`uvx`" in later
     assert '["irsim-mcp", "--workspace", …]' in later
-    assert SECTION.count("uvx") == 1
+    assert AGENTS.count("uvx") == 1
 
 
 def test_the_skills_are_installed_where_hosts_look(tmp_path: Path) -> None:
-    lines = [line for block in blocks("bash") for line in block.splitlines()]
+    lines = [line for block in blocks("bash") for line in block.splitlines() if "skills install" in line]
     assert len(lines) == 4
     for line in lines:
         command, _, place = line.partition("  #")

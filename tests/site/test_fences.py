@@ -1,7 +1,7 @@
 """Code on the pages works.
 
-Pages written by hand and the gallery run here. The README runs in tests/docs, examples of skills run in tests/skills,
-and examples of ``irsim describe`` in tests/lookup; of these pages, each block is read, and each command must exist.
+The gallery runs here. The README and pages written by hand run in tests/docs, examples of skills in tests/skills, and
+examples of ``irsim describe`` in tests/lookup; of these pages, each block is read, and each command must exist.
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from tests.warm import warm
 
 pytestmark = [pytest.mark.site, pytest.mark.one_python]
 
-HAND = ("index", "start/robotics", "start/learning", "start/agents", "start/from-ir-sim")
 PLACEHOLDERS = re.compile(r"…|\.\.\.|\b[A-Z]{3,}\b|<\w+>")
 
 
@@ -36,24 +35,6 @@ def execute(command: list[str], folder: Path) -> None:
     env = {**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(Path(irsim.__file__).parents[1])}
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=240, env=env)
     assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
-
-
-@pytest.mark.parametrize("page", HAND)
-def test_pages_by_hand_run_from_top_to_bottom(site: Path, tmp_path: Path, page: str) -> None:
-    for fence in read(site, page):
-        if fence.kind == "file":
-            (tmp_path / fence.about).write_text(fence.text, encoding="utf-8")
-        elif fence.kind == "not run":
-            assert len(fence.about.split()) > 3, "it says why"
-        elif fence.language == "python":
-            execute([sys.executable, "-c", fence.text], tmp_path)
-        elif fence.language == "bash":
-            commands = list(commands_of(fence.text))
-            assert commands, fence.text
-            for command in commands:
-                execute(warm([sys.executable, "-m", *command]), tmp_path)
-        else:
-            assert fence.language == "{toctree}", f"nothing runs a block of {fence.language}"
 
 
 def test_the_gallery_runs_as_it_says(site: Path, tmp_path: Path) -> None:

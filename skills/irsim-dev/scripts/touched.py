@@ -28,7 +28,7 @@ STEPS = (
         rf"{MODELS}|irsim/diagnostics/.*|irsim/(api|benchmarks|bridges|env|lookup|metrics|objects|results)/.*|templates/.*",
         "python -m irsim.lookup.reference",
     ),
-    (r"irsim/cli/.*", "python -m irsim.cli.overview README.md"),
+    (r"irsim/cli/.*", "python -m irsim.cli.overview"),
     (r"mcp_server/.*", "python tests/mcp/golden/write.py"),
     (r".*\.py", "ruff format . && ruff check . && mypy"),
     (r"irsim/core/.*\.(cpp|hpp)", "clang-format -i <the files>"),
