@@ -117,6 +117,7 @@ def run(
     import_modules(imports)
     perturbations = read_perturbations(rules[0] if perturb is None else perturb)
     until = cast("Until", rules[1]) if until is None else until
+    named_behavior = behavior
     driver, behavior = opened_policy(path, policy, behavior, limits)
     try:
         scenario, warnings = read_scenario(
@@ -186,6 +187,16 @@ def run(
             if record is False:
                 result.run_id, result.artifacts = None, {}  # of a record that is deleted now
     env.end(ending_time=0.0)
+    given: dict[str, Any] = {
+        "path": path,
+        "text": text,
+        "seed": result.seed,
+        "steps": steps,
+        "strict": strict,
+        "policy": policy,
+    }
+    given |= {"behavior": named_behavior, "perturb": perturb, "until": until, "imports": imports, "limits": limits}
+    result._again.arguments = given | {"bridges": plan.bridges}
     return result
 
 

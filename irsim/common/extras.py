@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from importlib.util import find_spec
+from typing import Any
 
 from irsim.diagnostics.errors import CodedError
 
-__all__ = ["ExtraError", "require"]
+__all__ = ["ExtraError", "library", "require"]
 
 
 class ExtraError(CodedError, ImportError):
@@ -28,3 +30,17 @@ def require(extra: str, *modules: str) -> None:
         be = "is" if len(missing) == 1 else "are"
         what = f"{' and '.join(missing)} {be} not installed"
         raise ExtraError("missing-extra", what, f"install the extra: pip install 'irsim-mcp[{extra}]'")
+
+
+def library(name: str) -> Any:
+    """A library that no extra installs, imported: programs that call this usually have it.
+
+    Args:
+        name: The library, whose package has the same name.
+
+    Raises:
+        ExtraError: It is missing; the message has the command that installs it.
+    """
+    if find_spec(name) is None:
+        raise ExtraError("missing-extra", f"{name} is not installed", f"install it: pip install {name}")
+    return import_module(name)

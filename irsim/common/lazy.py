@@ -9,7 +9,7 @@ from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
-__all__ = ["PUBLIC_HOMES", "computed", "lazy_names", "module_names"]
+__all__ = ["PUBLIC_HOMES", "call_home", "computed", "lazy_names", "module_names"]
 
 PUBLIC_HOMES = {
     "Batch": "irsim.env.batch",
@@ -75,6 +75,18 @@ def lazy_names(
         return sorted({*vars(sys.modules[package]), *homes, *own_modules})
 
     return get, listing
+
+
+def call_home(home: str, *args: Any, **kwargs: Any) -> Any:
+    """Call a function of a module that is imported at the call, for methods of data whose work needs other rooms.
+
+    Args:
+        home: ``module:function``.
+        *args: Arguments of the function.
+        **kwargs: Further arguments.
+    """
+    module, _, name = home.partition(":")
+    return getattr(import_module(module), name)(*args, **kwargs)
 
 
 Value = TypeVar("Value")

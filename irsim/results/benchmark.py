@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from irsim.common.lazy import call_home
 from irsim.common.text import listed
 from irsim.results.base import Result
 from irsim.results.findings import Finding
@@ -234,6 +235,16 @@ class BenchmarkResult(Result):
     results from before engines had one."""
     reproduce: str
     """Command that reproduces this result."""
+
+    def to_pandas(self) -> Any:
+        """A table of pandas with one row per episode, and the columns of ``results.parquet``.
+
+        ``attrs["units"]`` of the table has the unit of each column.
+
+        Raises:
+            ExtraError: pandas is missing.
+        """
+        return call_home("irsim.benchmarks.report.table:result_frame", self)
 
 
 class SuiteScenarioFacts(Result):

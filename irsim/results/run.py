@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, PrivateAttr
 
 from irsim.common.event_kinds import BETWEEN_STEPS, SIGHTS
+from irsim.common.lazy import call_home
 from irsim.common.text import clean
 from irsim.results.base import Result
 from irsim.results.concise import ConciseEvent, ConciseRobot, ConciseRun, is_command, rounded
@@ -17,6 +19,7 @@ __all__ = [
     "LOST_THINGS",
     "MAX_CONCISE",
     "MAX_DETAILED",
+    "Again",
     "EpisodeUntil",
     "HorizonSource",
     "ReplayResult",
@@ -38,6 +41,29 @@ MAX_DETAILED = 50
 """Number of robots and events in a detailed result."""
 LOST_THINGS = {"bridge-lost": "program of a bridge", "policy-lost": "policy"}
 """The thing that was lost, by ``lost_code``."""
+
+
+class Again:
+    """How a run is simulated again for its table and its replay; all are equal, because results differ by contents.
+
+    Attributes:
+        arguments: Arguments of ``irsim.run``; None if they are not known, as in another process.
+        folder: Folder of the recording of the second run, if there is one.
+    """
+
+    def __init__(self, arguments: dict[str, Any] | None = None) -> None:
+        self.arguments, self.folder = arguments, ""
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Again)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __deepcopy__(self, memo: object) -> Again:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Again, ()
 
 
 class RunResult(Result):
@@ -124,6 +150,24 @@ class RunResult(Result):
     """Files of the record by name."""
     notes: list[str] = Field(default_factory=list)
     """Parts that the record leaves out because there was too much of them, and messages of bridges."""
+    _again: Again = PrivateAttr(default_factory=lambda: Again())
+
+    def to_pandas(self, *, objects: str | Sequence[str] = "movers", ranges: bool = False) -> Any:
+        """A table of pandas with one row per step and object, and the columns that ``irsim export`` writes as Parquet.
+
+        A run without a recording (``record=True`` makes one) is simulated again for it. ``attrs["units"]`` of the
+        table has the unit of each column.
+
+        Args:
+            objects: ``movers`` (robots, and obstacles that can move), ``robots``, ``people``, ``all``, or names.
+            ranges: Whether the table has the ranges of lidars.
+
+        Raises:
+            ExtraError: pandas is missing.
+            InputError: The run has no recording and cannot be simulated again.
+            RunError: There is no such object, or the recording was deleted.
+        """
+        return call_home("irsim.api.kept_run:run_table", self, objects, ranges)
 
     def concise(
         self, *, detailed: bool = False, artifacts: dict[str, str] | None = None, advice: str = ""

@@ -69,6 +69,18 @@ def test_pandas_reads_every_episode(folder: tuple[Path, SuiteResult]) -> None:
     assert frame["zones.door.zone_crossings"].notna().any()
 
 
+def test_a_table_in_one_step_is_the_file(folder: tuple[Path, SuiteResult]) -> None:
+    import pandas
+
+    place, result = folder
+    frame, written = result.to_pandas(), pandas.read_parquet(place / TABLE)
+    for key in ("left", "jumped"):  # lists, which the file has as arrays
+        frame[key], written[key] = frame[key].map(list), written[key].map(list)
+    plain = [table.astype(object).where(table.notna(), None) for table in (frame, written)]
+    pandas.testing.assert_frame_equal(*plain)
+    assert frame.attrs["units"]["jerk_avg"] == "m/s^3"
+
+
 def test_duckdb_answers_questions(folder: tuple[Path, SuiteResult]) -> None:
     import duckdb
 

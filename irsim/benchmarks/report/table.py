@@ -22,11 +22,12 @@ from typing import Any, Literal, NamedTuple
 from irsim.benchmarks.report.rows import policy_labels
 from irsim.benchmarks.summary import KEYS
 from irsim.common.arguments import is_number
+from irsim.common.extras import library
 from irsim.common.files import replace_bytes
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.results.benchmark import BenchmarkResult, SuiteResult
 
-__all__ = ["MISSING", "TABLE", "has_tables", "write_table"]
+__all__ = ["MISSING", "TABLE", "has_tables", "result_frame", "write_table"]
 
 TABLE = "results.parquet"
 MISSING = f"{TABLE} was not written: pyarrow is not installed (pip install 'irsim-mcp[records]')"
@@ -81,6 +82,22 @@ def write_table(result: BenchmarkResult, hash: str, target: Path) -> None:
     buffer = pa.BufferOutputStream()
     pq.write_table(pa.Table.from_arrays(arrays, schema=schema), buffer, compression="zstd")
     replace_bytes(target, memoryview(buffer.getvalue()), mode=None)
+
+
+def result_frame(result: BenchmarkResult) -> Any:
+    """The same table of pandas, whose ``attrs["units"]`` has the unit of each column.
+
+    Args:
+        result: The result.
+
+    Raises:
+        ExtraError: pandas is missing.
+    """
+    pandas, columns = library("pandas"), _columns(result)
+    types = {"word": "category", "seed": "uint64", "integer": "Int64", "number": "float64", "text": "string"}
+    frame = pandas.DataFrame({one.name: pandas.Series(one.cells, dtype=types.get(one.kind, object)) for one in columns})
+    frame.attrs["units"] = {one.name: one.unit for one in columns}
+    return frame
 
 
 def _columns(result: BenchmarkResult) -> list[_Column]:

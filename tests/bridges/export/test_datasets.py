@@ -249,3 +249,15 @@ def test_what_is_no_dataset_is_refused_and_leaves_nothing(hall: Run, minari: Any
     irsim.export_run(hall, "hall-v0", to="minari")
     with pytest.raises(TargetError, match="'hall-v0' exists"):
         irsim.export_run(hall, "hall-v0", to="minari")
+
+
+def test_a_table_in_one_step_is_the_parquet_file(hall: Run) -> None:
+    import pandas
+
+    irsim.export_run(hall, "run.parquet", objects="all")
+    result = hall.result
+    assert result is not None
+    frame = result.to_pandas(objects="all", ranges=True)
+    pandas.testing.assert_frame_equal(frame, pandas.read_parquet("run.parquet"), check_dtype=False)
+    assert (frame.attrs["units"]["speed"], frame.attrs["units"]["run"]) == ("m/s", "")
+    assert "ranges_0" not in result.to_pandas()

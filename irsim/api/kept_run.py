@@ -1,0 +1,58 @@
+"""The recording behind a result of ``irsim.run``, for its table and its replay."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import weakref
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from irsim.api.run_scenario import run
+from irsim.bridges.export.frames import run_frame
+from irsim.common.extras import library
+from irsim.diagnostics.errors import InputError
+from irsim.results.run import RunResult
+from irsim.runs.reading import Run, open_run
+
+__all__ = ["recorded_run", "run_table"]
+
+_RECORD = "record the run: irsim.run(…, record=True)"
+
+
+def run_table(result: RunResult, objects: str | Sequence[str], ranges: bool) -> Any:
+    """See :meth:`irsim.results.run.RunResult.to_pandas`."""
+    library("pandas")  # before a run is simulated again for nothing
+    return run_frame([recorded_run(result)], objects, ranges=ranges)
+
+
+def recorded_run(result: RunResult) -> Run:
+    """The recording of a run; one without a recording is simulated again once, into a temporary folder.
+
+    Args:
+        result: The result.
+
+    Raises:
+        InputError: The run cannot be simulated again, or differs from the first one then.
+        RunError: The recording was deleted.
+    """
+    if result.artifacts:
+        return open_run(Path(result.artifacts["scenario.yaml"]).parent)
+    again = result._again
+    if again.arguments is None or again.arguments["bridges"]:
+        why = "other programs took part in it" if again.arguments else "it was read from a file or another process"
+        raise InputError(f"the result has no recording, and {why}", _RECORD)
+    if not again.folder:
+        folder = tempfile.mkdtemp(prefix="irsim-")
+        weakref.finalize(again, shutil.rmtree, folder, ignore_errors=True)
+        second = run(**again.arguments, record=Path(folder, "run"))
+        if _facts(second) != _facts(result):
+            raise InputError("simulating the run again gives another episode: its file or its policy changes", _RECORD)
+        again.folder = str(Path(folder, "run"))
+    return open_run(again.folder)
+
+
+def _facts(result: RunResult) -> str:
+    """All that the simulation decides."""
+    return result.model_dump_json(include={"outcome", "steps", "robots", "events", "event_count", "zones"})
