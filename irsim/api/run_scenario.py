@@ -23,7 +23,7 @@ from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
 from irsim.episodes.opening import MAX_TRIES, crowded_message, findings_under_policy, first_with_room
 from irsim.episodes.run_report import RunPlan, run_result
 from irsim.results.findings import Finding
-from irsim.results.run import RunResult, Until
+from irsim.results.run import Again, RunResult, Until
 from irsim.runs.recorder import recording
 from irsim.scenario.checks.bridges import driven_without_goal
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
@@ -196,7 +196,8 @@ def run(
         "policy": policy,
     }
     given |= {"behavior": named_behavior, "perturb": perturb, "until": until, "imports": imports, "limits": limits}
-    result._again.arguments = given | {"bridges": plan.bridges}
+    result._again = again = Again()
+    again.arguments = given | {"bridges": plan.bridges}
     return result
 
 

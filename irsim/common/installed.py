@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import os
 import sys
+import sysconfig
 from collections.abc import Iterable
 from functools import cache
 
-__all__ = ["ConflictError", "find_conflicts", "refuse_conflicts", "version"]
+__all__ = ["ConflictError", "find_conflicts", "refuse_conflicts", "script_folder", "version"]
 
 _SCRIPTS = ("irsim", "irsim-mcp")
 
@@ -72,3 +73,22 @@ def version() -> str:
     from importlib.metadata import version as version_of
 
     return version_of("irsim-mcp")
+
+
+def script_folder() -> str | None:
+    """The folder of the running script; None without one, as in a notebook, and for programs that are installed.
+
+    Python puts it first in its path, where a script may put another folder, as for IR-SIM 2.12.
+    """
+    file = getattr(sys.modules.get("__main__"), "__file__", None)
+    if file is None:
+        return None
+    places = (sys.path[0] if sys.path else "", os.path.dirname(os.path.abspath(file)))
+    return next((place for place in places if place and not _is_installed(place)), None)
+
+
+def _is_installed(place: str) -> bool:
+    """Whether a folder or an archive of the path belongs to the installation of Python."""
+    own = [sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib", "scripts")]
+    folder = os.path.realpath(place)
+    return place.endswith(".zip") or any(folder.startswith(os.path.realpath(one)) for one in own)

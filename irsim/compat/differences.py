@@ -246,6 +246,7 @@ DIFFERENCES: dict[str, Difference] = {
     ),
     "api-24": Difference("`render(show_goal=False)` hides nothing", "it hides the goal", "as the option says"),
     "api-25": Difference("environments share one animation buffer", "each has its own", "frames must not mix"),
+    "api-26": Difference("notebooks may save pictures inside Python", "in the working directory", "it is theirs"),
 }
 """Id -> difference. Ids with a D are general; the others name the part of IR-SIM 2.12 in which it was found."""
 

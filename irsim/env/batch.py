@@ -20,6 +20,7 @@ from irsim.common.arrays import Floats
 from irsim.common.keywords import answers_misspelt
 from irsim.compat.objects.view import make_view
 from irsim.diagnostics.errors import InputError
+from irsim.env.notebook import batch_html
 from irsim.objects.lifecycle import attach_python
 from irsim.policies.behavior import with_policy
 from irsim.policies.catalog import PolicySource, open_policy
@@ -100,6 +101,8 @@ class Batch:
         self.count = simulation.count
         self._command = simulation.command.reshape(n, objects, 3)
         self._given = simulation.given.reshape(n, objects)
+
+    _repr_html_ = batch_html
 
     @property
     def simulation(self) -> Simulation:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from irsim.common.lazy import computed
 from irsim.common.log import Logger
-from irsim.env import drawing, lifetime, live, loop, messages, object_list, policies, queries, snapshots
+from irsim.env import drawing, lifetime, live, loop, messages, notebook, object_list, policies, queries, snapshots
 from irsim.env.parameters import PathParam
 from irsim.env.state import EnvState
 from irsim.graphics.scene.style import Palette
@@ -169,6 +169,10 @@ class Env(EnvState):
     draw_quiver = drawing.draw_quiver
     draw_quivers = drawing.draw_quivers
     _env_plot = computed(drawing.env_plot)
+
+    # notebooks: notebook.py
+    replay = notebook.replay
+    _repr_html_ = notebook.env_html
 
     # keyboard and mouse: live.py
     keyboard = computed(live.keyboard)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import platform
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from itertools import count
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.installed import script_folder
 from irsim.common.log import Logger
 from irsim.components.maps._grid import merged
 from irsim.components.maps._site import HALF
@@ -172,10 +172,13 @@ class EnvParam:
 
 
 class PathParam:
-    """Folders beside the running script, to which figures and animations are written."""
+    """Folders beside the running script, to which figures and animations are written.
+
+    Without a script, as in a notebook, they are in the working directory.
+    """
 
     def __init__(self) -> None:
-        self.root_path = sys.path[0] or str(Path.cwd())
+        self.root_path = script_folder() or str(Path.cwd())
         self.ani_buffer_path = self.root_path + "/animation_buffer"
         self.ani_path = self.root_path + "/animation"
         self.fig_path = self.root_path + "/figure"

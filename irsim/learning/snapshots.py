@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from irsim.learning.notebook import worlds_html
 from irsim.simulation.snapshot import dump, load
 
 __all__ = ["Snapshots"]
@@ -19,6 +20,9 @@ class Snapshots:
     """
 
     worlds: Any
+
+    def _repr_html_(self) -> str:
+        return worlds_html(self.worlds, type(self).__name__)
 
     def snapshot(self) -> bytes:
         """The present state, from which :meth:`restore` goes on bit for bit: planning and checkpoints need it.

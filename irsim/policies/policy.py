@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from irsim.common.arguments import as_given, is_number, is_whole_number
 from irsim.common.arrays import Floats
+from irsim.common.notebook import facts, section
 from irsim.diagnostics.errors import ArgumentError
 from irsim.options.knowledge import Fact, knowledge_class
 
@@ -148,6 +149,19 @@ class Policy(ABC):
     def recall(self, memory: dict[str, Any]) -> None:
         """Continue from what :meth:`memory` returned."""
         vars(self).update(memory)
+
+    def _repr_html_(self) -> str:
+        known = {
+            "kind": type(self).__name__,
+            "result": "velocities in the world" if self.output == "velocity" else "controls of the drive",
+            "drives": "all" if self.drives is None else ", ".join(sorted(self.drives)),
+            "information": self.knowledge() or "not known",
+            "decides every": "step" if self.decision_dt is None else f"{self.decision_dt:g} s",
+            "same decisions for each seed": not self.stochastic,
+            "SHA-256": self.digest,
+            "written": self.text,
+        }
+        return section(f"Policy {self.name}", facts(known))
 
     @abstractmethod
     def act(self, observations: Observations) -> Floats:

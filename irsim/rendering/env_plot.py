@@ -12,8 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
+from irsim.common.notebook import Cell, draws_inline
 from irsim.diagnostics.diagnostic import nearest
 from irsim.graphics.encoding.pixels import to_image
+from irsim.graphics.encoding.png import png_bytes
 from irsim.graphics.figure import window
 from irsim.graphics.figure.figure import SceneFigure, inches
 from irsim.graphics.figure.pyplot_entry import PyplotEntry, activate, active
@@ -68,6 +70,8 @@ class EnvPlot(PlotFormat):
         self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._pictures.has)
         self._user_sensors = UserDrawings()
         self._window: Window | None = None
+        self._inline = draws_inline()
+        self._cell = Cell() if display and self._inline else None
         self._saving = Saving(self, self.saved_figure_kwargs.pop("format", None))
         self._unknown: set[str] = set()
         self._hidden: set[int] = set()
@@ -107,7 +111,7 @@ class EnvPlot(PlotFormat):
         """Return the figure, which is made when it is first needed."""
         if self._figure is None:
             entry = self.list_in_pyplot()
-            if self._display:
+            if self._display and self._cell is None:
                 name, current = self.env.simulation.scenario.name, active()
                 self._window = window.open_window(self._size, self._dpi, full=self._full, title=name)
                 if self._window is not None:
@@ -131,11 +135,16 @@ class EnvPlot(PlotFormat):
         return figure
 
     def list_in_pyplot(self) -> PyplotEntry:
-        """Let ``plt.gcf()`` find the figure, which is made on demand (:mod:`irsim.graphics.figure.pyplot_entry`)."""
+        """Let ``plt.gcf()`` find the figure, which is made on demand (:mod:`irsim.graphics.figure.pyplot_entry`).
+
+        Not in a notebook, which would show every listed figure below the cell once more.
+        """
         if self._entry is None:
             plot = ref(self)
             self._entry = PyplotEntry(lambda: _canvas_of(plot()))
             finalize(self, self._entry.leave)
+            if self._inline:
+                self._entry.leave()
         return self._entry
 
     # the present -----------------------------------------------------------------------------------------------------
@@ -266,6 +275,12 @@ class EnvPlot(PlotFormat):
             near = nearest(key, STYLE_KEYS)
             hint = f": did you mean {near!r}?" if near else ""
             self.env.logger.warning(f"render: {key!r} is not a plot option and is ignored{hint}")
+
+    def show_in_cell(self) -> bool:
+        """Show the picture below the present cell of a notebook; False where figures do not appear in cells."""
+        if self._cell is not None:
+            self._cell.show(png_bytes(self._saving.pixels()[0], self._dpi))
+        return self._cell is not None
 
     def frame(self) -> Image.Image:
         """Return the picture as it would be saved."""

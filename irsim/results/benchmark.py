@@ -7,6 +7,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from irsim.common.lazy import call_home
+from irsim.common.notebook import facts, section, table
 from irsim.common.text import listed
 from irsim.results.base import Result
 from irsim.results.findings import Finding
@@ -245,6 +246,23 @@ class BenchmarkResult(Result):
             ExtraError: pandas is missing.
         """
         return call_home("irsim.benchmarks.report.table:result_frame", self)
+
+    def _repr_html_(self) -> str:
+        known = {"seeds": len(self.seeds), "episodes": len(self.episodes), "reproduce": self.reproduce}
+        columns = ("scenario", "policy", "episodes", "success", "95 % interval", "collision", "timeout")
+        rows = [
+            (
+                row.scenario, row.behavior, row.episodes, _percent(row.success.rate),
+                f"{_percent(row.success.low)} to {_percent(row.success.high)}" if row.success.low is not None else None,
+                _percent(row.collision.rate), _percent(row.timeout.rate),
+            )
+            for row in self.rows
+        ]  # fmt: skip
+        return section("Benchmark", table(columns, rows), facts(known))
+
+
+def _percent(share: float | None) -> str:
+    return "" if share is None else f"{share:.0%}"
 
 
 class SuiteScenarioFacts(Result):

@@ -9,6 +9,7 @@ from pydantic import Field, PrivateAttr
 
 from irsim.common.event_kinds import BETWEEN_STEPS, SIGHTS
 from irsim.common.lazy import call_home
+from irsim.common.notebook import Page, facts, section, table
 from irsim.common.text import clean
 from irsim.results.base import Result
 from irsim.results.concise import ConciseEvent, ConciseRobot, ConciseRun, is_command, rounded
@@ -51,11 +52,11 @@ class Again:
         folder: Folder of the recording of the second run, if there is one.
     """
 
-    def __init__(self, arguments: dict[str, Any] | None = None) -> None:
-        self.arguments, self.folder = arguments, ""
+    arguments: dict[str, Any] | None = None
+    folder: str = ""
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Again)
+        return other is None or isinstance(other, Again)
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -150,7 +151,7 @@ class RunResult(Result):
     """Files of the record by name."""
     notes: list[str] = Field(default_factory=list)
     """Parts that the record leaves out because there was too much of them, and messages of bridges."""
-    _again: Again = PrivateAttr(default_factory=lambda: Again())
+    _again: Again | None = PrivateAttr(None)
 
     def to_pandas(self, *, objects: str | Sequence[str] = "movers", ranges: bool = False) -> Any:
         """A table of pandas with one row per step and object, and the columns that ``irsim export`` writes as Parquet.
@@ -168,6 +169,31 @@ class RunResult(Result):
             RunError: There is no such object, or the recording was deleted.
         """
         return call_home("irsim.api.kept_run:run_table", self, objects, ranges)
+
+    def replay(self, height: int = 640) -> Page:
+        """The replay of the run: a page that a notebook shows below the cell; ``.save("replay.html")`` writes it.
+
+        A run without a recording is simulated again for it.
+
+        Args:
+            height: Height in the notebook [px].
+
+        Raises:
+            InputError: The run has no recording and cannot be simulated again.
+            RunError: The recording was deleted.
+        """
+        page: Page = call_home("irsim.api.kept_run:run_replay", self, height)
+        return page
+
+    def _repr_html_(self) -> str:
+        known = {"seed": self.seed, "simulated": f"{self.sim_time:g} s in {self.steps} steps"}
+        known |= {"reproduce": self.reproduce}
+        columns = ("robot", "outcome", "time to goal [s]", "collisions", "path [m]", "smallest clearance [m]")
+        rows = [
+            (one.name, one.outcome, one.time_to_goal, one.collision_count, one.path_length, one.min_clearance)
+            for one in self.robots
+        ]
+        return section(f"{self.scenario}: {self.summary}", table(columns, rows) if rows else "", facts(known))
 
     def concise(
         self, *, detailed: bool = False, artifacts: dict[str, str] | None = None, advice: str = ""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import zlib
 from collections import Counter
-from collections.abc import Container
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,10 @@ from irsim.scenario.limits import Limits
 from irsim.simulation.events import BETWEEN_STEPS, Event
 from irsim.simulation.trace import Trace
 
-__all__ = ["Packed", "pack_run"]
+if TYPE_CHECKING:
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["Packed", "pack_run", "pack_trace"]
 
 FORMAT = 1
 """Version of the packed format."""
@@ -85,12 +88,32 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
     """
     trace = run.trace()
     with initial_scene(run, limits) as env:
-        scene = describe_scene(env.simulation)
-        shapes, objects, lidars = page_objects(scene)
-        grid = page_grid(scene)
-        zones = page_zones(env.scenario.world.zones)
-        world, starts = env.simulation.scenario.world, env.simulation.start_step.copy()
-        title = env.simulation.scenario.name
+        about = {
+            "run_id": run.id,
+            "title": run.id if run.meta.get("scenario") is None else clean(env.simulation.scenario.name),
+            "status": run.status,
+            **_ending(run),
+            "seed": int(run.meta["seed"]),
+            "irsim": clean(run.meta.get("irsim", "")),
+            "notes": run.notes,
+        }
+        return pack_trace(trace, run.events, env.simulation, about)
+
+
+def pack_trace(trace: Trace, events: Sequence[Event], simulation: Simulation, about: Mapping[str, Any]) -> Packed:
+    """Pack the trace of an episode and the shapes of its objects.
+
+    Args:
+        trace: The trace.
+        events: The events of the episode.
+        simulation: A simulation of the same scene, at its start.
+        about: The words of the page about the run: ``run_id``, ``title``, ``status``, ``outcome``, ``summary``,
+            ``reason``, ``seed``, ``irsim`` and ``notes``.
+    """
+    scene = describe_scene(simulation)
+    shapes, objects, lidars = page_objects(scene)
+    grid = page_grid(scene)
+    world, starts = simulation.scenario.world, simulation.start_step
     columns = Columns()
     x, y = (float(value) for value in world.offset)
     width, height = float(world.width), float(world.height)
@@ -114,13 +137,7 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
             columns.add("unknown", grid.pop("unknown"))
     head = {
         "format": FORMAT,
-        "run_id": run.id,
-        "title": run.id if run.meta.get("scenario") is None else clean(title),
-        "status": run.status,
-        **_ending(run),
-        "seed": int(run.meta["seed"]),
-        "irsim": clean(run.meta.get("irsim", "")),
-        "notes": run.notes,
+        **about,
         "step_time": trace.step_time,
         "last_step": int(trace.step[-1]),
         "every": every,
@@ -131,8 +148,8 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
         "lidars": lidars,
         "scans": scans,
         "grid": grid,
-        "zones": zones,
-        **_events(run, trace, objects),
+        "zones": page_zones(world.zones),
+        **_events(events, trace, objects),
     }
     return Packed(columns.block(head), head)
 
@@ -243,14 +260,14 @@ def _ending(run: Run) -> dict[str, Any]:
     return {"outcome": result.outcome, "summary": clean(result.summary, 1000), "reason": reason}
 
 
-def _events(run: Run, trace: Trace, objects: list[dict[str, Any]]) -> dict[str, Any]:
+def _events(recorded: Sequence[Event], trace: Trace, objects: list[dict[str, Any]]) -> dict[str, Any]:
     """Events as [step, kind, object, partner or -1, x, y], and how many there are and are left out.
 
     There are further values: the zone, if any; of a contact between steps an empty zone and the time within the step.
     """
     number = {name: row for row, name in enumerate(trace.names)}
     last = int(trace.step[-1])
-    events = [event for event in run.events if event.step <= last and event.object in number]
+    events = [event for event in recorded if event.step <= last and event.object in number]
     count = len(events)
     left = Counter(event.kind for event in events)
     events = _most_important(events, {trace.names[k] for k, item in enumerate(objects) if item["role"] == "robot"})

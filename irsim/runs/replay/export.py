@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from irsim.common.files import check_suffix, code_of, write_atomically
+from irsim.common.notebook import SUFFIXES
 from irsim.common.text import clean
 from irsim.results.run import ReplayResult
 from irsim.runs.files import RunError
@@ -14,8 +15,6 @@ from irsim.runs.replay.page import page
 from irsim.scenario.limits import Limits
 
 __all__ = ["replay"]
-
-SUFFIXES = (".html", ".htm")
 
 
 def replay(

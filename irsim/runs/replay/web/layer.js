@@ -56,6 +56,7 @@ function prepared(layer, camera, ratio, key) {
 }
 
 function copied(layer, context, camera, ratio, alpha) {
+  if (!layer.canvas.width || !layer.canvas.height) return; // the page has no size yet, as in a frame of a notebook
   const { x, y, width, height } = layer.camera;
   const left = (camera.width - width) / 2 + (x - camera.x) * camera.scale;
   const top = (camera.height - height) / 2 + (camera.y - y) * camera.scale;
