@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
-from typing import Any
 
 from answers import keys_table, section
 from pages import Page, anchor, contents, link, plain
@@ -14,12 +13,11 @@ from irsim.common.event_kinds import EVENTS
 from irsim.compat import DIFFERENCES
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup import Answer, lookup
-from irsim.lookup import topics as lookup_topics
+from irsim.lookup.language import language_schema
 from irsim.lookup.metrics import METRIC_TOPICS
 from irsim.lookup.schema_walk import mappings, paths
 from irsim.lookup.things import ALL_GUIDES
 from irsim.options.registry import REGISTRIES
-from irsim.scenario.model.json_schema import json_schema
 from irsim_mcp.reference import explanation
 
 __all__ = ["PLACES", "language_pages", "policy_names", "schema_anchor", "task_names", "whereabouts"]
@@ -61,22 +59,14 @@ _PICTURES = {
 
 
 @cache
-def _schema() -> dict[str, Any]:
-    return json_schema()
-
-
-lookup_topics.json_schema = _schema  # type: ignore[attr-defined]  # made once: the language stays while the site is built
-
-
-@cache
 def _answer(topic: str) -> Answer:
-    return lookup(topic, schema=_schema())
+    return lookup(topic)
 
 
 @cache
 def _mappings() -> tuple[tuple[str, ...], ...]:
     """Paths of the language that lead to mappings; obstacles, groups and local behaviors repeat keys."""
-    schema = _schema()
+    schema = language_schema()
     return tuple(
         path
         for path, node in paths(schema)

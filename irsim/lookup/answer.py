@@ -78,6 +78,8 @@ class Answer(_Data):
     """Related topics."""
     best: Answer | None = None
     """Of a search: what the first of the topics says."""
+    unknown: list[str] = []
+    """Of a search: the words that occur in no topic."""
     read_as: str | None = None
     """The name that this answers: the one nearest to a misspelt word; None if the word is a topic."""
 

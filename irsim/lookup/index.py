@@ -10,11 +10,11 @@ from irsim.compat import DIFFERENCES
 from irsim.diagnostics.codes import CODES, TOOL_CODES, Code
 from irsim.diagnostics.examples import EXAMPLES
 from irsim.lookup.answer import Answer, Key, first_sentence
+from irsim.lookup.language import language_schema
 from irsim.lookup.metrics import METRIC_TOPICS
 from irsim.lookup.schema_walk import mappings, yaml_text
 from irsim.lookup.things import ALL_GUIDES, NO
 from irsim.options.registry import REGISTRIES, Registry
-from irsim.scenario.model.json_schema import json_schema
 
 __all__ = [
     "PICTURE",
@@ -37,7 +37,7 @@ PICTURE = "Picture of its start:"
 
 def index_answer() -> Answer:
     """Answer an empty topic: the components, templates, guides, metrics and codes."""
-    schema = json_schema()
+    schema = language_schema()
     language = max(mappings(schema, schema), key=lambda option: len(option["properties"]))
     sections = Key(name="scenario", text=", ".join(language["properties"]))
     kinds = [Key(name=kind, text=_overview(registry)) for kind, registry in sorted(REGISTRIES.items())]

@@ -10,11 +10,11 @@ from irsim.bundled import templates
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key, key_list, key_table, plain_table
 from irsim.lookup.guides import GUIDES
+from irsim.lookup.language import language_schema
 from irsim.lookup.schema_walk import COLOR, Node, alternatives, mappings, yaml_text
 from irsim.lookup.schema_walk import components as options_of
 from irsim.lookup.topics import lookup
 from irsim.options.registry import KINEMATICS, REGISTRIES
-from irsim.scenario.model.json_schema import json_schema
 from irsim.scenario.model.zones import Zone
 from irsim.scenario.read import read
 
@@ -37,7 +37,7 @@ class _Source:
 
 def pages() -> dict[str, str]:
     """Return the text of each page by its file name without suffix."""
-    source = _Source(json_schema())
+    source = _Source(language_schema())
     note = "<!-- Written by `python -m irsim.lookup.reference`: do not edit. -->\n"
     return {name: f"# {title}\n\n{note}\n{make(source).strip()}\n" for name, (title, make) in PAGES.items()}
 
@@ -215,7 +215,7 @@ def _components(source: _Source, kind: str, level: str = "##") -> str:
 
 def components(kind: str) -> str:
     """Return sections for the components of a kind, for pages of other skills."""
-    return _components(_Source(json_schema()), kind)
+    return _components(_Source(language_schema()), kind)
 
 
 def _all_keys(answer: Answer) -> list[Key]:

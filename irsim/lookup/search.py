@@ -19,7 +19,7 @@ from irsim.lookup.synonyms import EVERYDAY, named
 from irsim.lookup.things import ALL_GUIDES
 from irsim.options.registry import REGISTRIES
 
-__all__ = ["MAX_HITS", "all_topics", "near_topics", "nearest_name", "search_answer"]
+__all__ = ["MAX_HITS", "all_topics", "mended_text", "near_topics", "nearest_name", "nearest_topic", "search_answer"]
 
 MAX_HITS = 5
 """Topics that a search shows."""
@@ -29,6 +29,8 @@ _MAX_NAMESAKES = 20
 """Keys of one name that are shown."""
 _MIN_LIKENESS = 0.8
 """Similarity (0 to 1) from which on a name is suggested, or ends a search."""
+_MIN_SIMILAR = 0.75
+"""Similarity from which on a topic that is the only similar one is taken for what was meant."""
 _MIN_LEAD = 0.03
 """Similarity by which the nearest name must be nearer than the next."""
 _MAX_CHOICES = 12
@@ -123,7 +125,9 @@ def _also(first: str, names: Sequence[str]) -> str:
 
 def _hits_answer(wanted: str, hits: list[Key], title: str, unknown: Sequence[str] = ()) -> Answer:
     text = f"Nothing about {', '.join(map(repr, map(clean, unknown)))}." if unknown else ""
-    return Answer(topic=clean(wanted), kind="search", title=title, text=text, groups={"topics": hits})
+    return Answer(
+        topic=clean(wanted), kind="search", title=title, text=text, groups={"topics": hits}, unknown=list(unknown)
+    )
 
 
 def _documents(schema: Node, keys: list[tuple[Key, Node]]) -> tuple[list[full_text.Document], dict[str, Key]]:
@@ -200,6 +204,23 @@ def nearest_name(schema: Node, word: str) -> str | None:
     likeness = [difflib.SequenceMatcher(None, name, word.lower()).ratio() for name in near]
     clear = len(near) == 1 or (len(near) == 2 and likeness[0] - likeness[1] >= _MIN_LEAD)
     return near[0] if clear else None
+
+
+def nearest_topic(near: Sequence[str], words: Sequence[str]) -> str | None:
+    """Return the first of some similar topics, if it is clearly nearer to the words than the second."""
+    spelt = ((name, ".".join(words)) for name in near[:2])
+    pairs = (((name, text), (name.rpartition(".")[2], text)) for name, text in spelt)
+    likeness = [max(difflib.SequenceMatcher(None, *pair).ratio() for pair in both) for both in pairs]
+    clear = near and likeness[0] >= _MIN_SIMILAR and (len(near) == 1 or likeness[0] - likeness[1] >= _MIN_LEAD)
+    return near[0] if clear else None
+
+
+def mended_text(schema: Node, topic: str, unknown: Sequence[str]) -> str | None:
+    """Return a text with the nearest name in place of each unknown word; None if a word has no such name."""
+    mended = [
+        nearest_name(schema, word) if set(full_text.words_of(word)) & set(unknown) else word for word in topic.split()
+    ]
+    return " ".join(filter(None, mended)) if unknown and all(mended) and mended != topic.split() else None
 
 
 def all_topics(schema: Node) -> set[str]:

@@ -25,6 +25,7 @@ from irsim.lookup.index import (
     template_answer,
     templates_answer,
 )
+from irsim.lookup.language import language_schema
 from irsim.lookup.metrics import METRIC_TOPICS, all_metrics, metric_answer, metric_topic, task_answer
 from irsim.lookup.policies import (
     convert_answer,
@@ -35,7 +36,15 @@ from irsim.lookup.policies import (
     suites_answer,
 )
 from irsim.lookup.schema_walk import COLOR, Node, component_name, components, definitions_of, key, mappings, paths, step
-from irsim.lookup.search import MAX_HITS, all_topics, near_topics, nearest_name, search_answer
+from irsim.lookup.search import (
+    MAX_HITS,
+    all_topics,
+    mended_text,
+    near_topics,
+    nearest_name,
+    nearest_topic,
+    search_answer,
+)
 from irsim.lookup.small_examples import BETTER, example_of, small_example
 from irsim.lookup.synonyms import named
 from irsim.lookup.things import ALL_GUIDES, THINGS
@@ -66,7 +75,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         topic: A path (``robot.sensors.lidar2d.range_max``), a component (``behavior rvo``, ``rvo``), a kind of
             component (``sensors``), a key, a template, a metric, a code, or a word to search for; empty for an index.
             A misspelt word gives the answer to the name that is clearly nearest.
-        schema: JSON Schema of the language, if the caller has it; making it is most of the work.
+        schema: JSON Schema of the language, if the caller has another one.
 
     Raises:
         TopicError: No topic has that name; the message names similar ones.
@@ -110,7 +119,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return found_task
     if topic.strip() in DIFFERENCES:
         return difference_answer(topic.strip())
-    schema = json_schema() if schema is None else schema
+    schema = language_schema() if schema is None else schema
     match = _find(schema, words) if words else None
     if match:
         return _part(schema, *match)
@@ -129,12 +138,24 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     if component is not None:
         return lookup(component, schema=schema)
     try:
-        return search_answer(schema, topic.strip(), words or topic.split(), lambda hit: lookup(hit, schema=schema))
-    except TopicError:
+        found = search_answer(schema, topic.strip(), words or topic.split(), lambda hit: lookup(hit, schema=schema))
+    except TopicError as error:
         nearest = nearest_name(schema, topic.strip()) if len(topic.split()) == 1 else None
+        nearest = nearest or nearest_topic(error.near, words)
         if nearest is None:
             raise
-        return lookup(nearest, schema=schema).model_copy(update={"read_as": nearest})
+        return _neighbour(schema, nearest)
+    mended = mended_text(schema, topic, found.unknown)
+    return found if mended is None else _neighbour(schema, mended)
+
+
+def _neighbour(schema: Node, name: str) -> Answer:
+    """The answer to a question that was misspelt: of a search, the topic that it finds first."""
+    answer = lookup(name, schema=schema)
+    if answer.best is not None:
+        others = [key.name for keys in answer.groups.values() for key in keys][1:]
+        answer = answer.best.model_copy(update={"see": list(dict.fromkeys([*answer.best.see, *others]))})
+    return answer.model_copy(update={"read_as": name})
 
 
 def schema_part(topic: str) -> Node:
@@ -334,7 +355,7 @@ def _names_in(part: str) -> list[str]:
     written = [word for word in words if not word.isalpha()]  # no words of a sentence
     if len(words) < 2 or not (written or set(words) <= set(templates.names())):
         return [part]
-    schema = json_schema()
+    schema = language_schema()
     names = all_topics(schema)
     if not set(words) <= {*names, *(name.rpartition(".")[2] for name in names)}:
         return [part]
@@ -357,7 +378,7 @@ def lookup_several(topics: list[str]) -> list[Answer | TopicError]:
     """
     if len(topics) > MAX_TOPICS:
         raise InputError(f"{len(topics)} topics are too many", f"ask for at most {MAX_TOPICS} at once")
-    schema, answers = json_schema(), list[Answer | TopicError]()
+    schema, answers = language_schema(), list[Answer | TopicError]()
     for topic in topics:
         try:
             answers.append(lookup(topic, schema=schema))

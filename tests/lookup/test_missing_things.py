@@ -55,3 +55,29 @@ def test_names_of_files_lead_to_the_right_neighbour(workspace: object) -> None:
 
 def test_an_unknown_sensor_says_how_one_of_ones_own_is_found() -> None:
     assert "--import MODULE" in lookup("unknown-sensor").text
+
+
+@pytest.mark.parametrize(
+    ("asked", "title"),
+    [
+        ("lidr", "sensor lidar2d"),
+        ("lidr range", "sensor lidar2d"),
+        ("orka", "behavior orca"),
+        ("behavior rov", "behavior rvo"),
+        ("sensor lidr2d", "sensor lidar2d"),
+        ("robot.sensors.lidr2d", "sensor lidar2d"),
+        ("step_tme", "world.step_time"),
+        ("policy crwd", "trained policy crowd"),
+    ],
+)
+def test_a_misspelt_word_leads_to_the_text_of_its_neighbour(asked: str, title: str) -> None:
+    answer = lookup(asked)
+    assert answer.title == title
+    assert answer.read_as is not None
+    assert answer.text
+
+
+def test_a_word_without_a_neighbour_is_not_guessed() -> None:
+    with pytest.raises(LookupError, match="is not a topic"):
+        lookup("wifi")
+    assert lookup("laser qwertz").read_as is None
