@@ -22,6 +22,7 @@ from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
 from irsim.episodes.opening import MAX_TRIES, crowded_message, findings_under_policy, first_with_room
 from irsim.episodes.run_report import RunPlan, run_result
+from irsim.episodes.suitability import unsuited
 from irsim.results.findings import Finding
 from irsim.results.run import Again, RunResult, Until
 from irsim.runs.recorder import recording
@@ -129,6 +130,7 @@ def run(
         raise
     if driver is not None:
         warnings = findings_under_policy(warnings, scenario)
+        warnings += [Finding.of(item) for item in unsuited(driver.text or "", scenario)]
     chosen, hidden = seed_of(scenario, seed), save is None and not show
     env, crowded = first_with_room(
         lambda drawn: Env(scenario, seed=drawn, display=show, headless=hidden, log_level="ERROR", policy=driver),

@@ -26,6 +26,7 @@ from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.installed import version
 from irsim.diagnostics.errors import InputError, OverLimitError
 from irsim.episodes.opening import findings_under_policy, unopened_findings
+from irsim.episodes.suitability import unsuited
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import PolicySource
 from irsim.policies.policy import Policy
@@ -111,6 +112,7 @@ def prepare(
         if AS_WRITTEN not in wanted:
             warnings[name] = findings_under_policy(warnings[name], scenario)
         warnings[name] += unopened_findings(scenario, "a benchmark")
+        warnings[name] += [Finding.of(item) for behavior in wanted for item in unsuited(behavior, scenario)]
         scenario = perturbed(scenario, perturbations, called=name if isinstance(source, Document) else None)
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
         if texts:

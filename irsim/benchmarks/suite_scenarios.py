@@ -266,7 +266,7 @@ def under_each_policy(one: Expanded, suite: Suite) -> Iterator[tuple[str, Mappin
             continue
         mine = {key for key, part in one.policies.items() if part == COMPARED}
         entries = [
-            _with(entry, options) if not mine or mine & {entry.get("name"), *(entry.get("tags") or ())} else entry
+            _with(entry, options) if not mine or mine & _called(entry) else entry
             for entry in _entries(one.data.get("robot"))
         ]
         yield name, {**one.data, "robot": entries}
@@ -275,6 +275,12 @@ def under_each_policy(one: Expanded, suite: Suite) -> Iterator[tuple[str, Mappin
 def _entries(given: Any) -> list[dict[str, Any]]:
     entries = given if isinstance(given, list) else [] if given is None else [given]
     return [dict(entry) for entry in entries]
+
+
+def _called(entry: Mapping[str, Any]) -> set[Any]:
+    """Names and tags of an entry."""
+    name, tags = entry.get("name"), entry.get("tags") or ()
+    return {*(name if isinstance(name, list) else [name]), *([tags] if isinstance(tags, str) else tags)}
 
 
 def _with(entry: dict[str, Any], options: Mapping[str, Any] | None) -> dict[str, Any]:

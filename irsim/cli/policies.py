@@ -10,11 +10,16 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
+from irsim.api.read_input import read_scenario
 from irsim.cli.findings import import_user_modules
 from irsim.cli.options import Imports, Json
 from irsim.cli.output import console
 from irsim.common.text import clean
+from irsim.diagnostics.errors import InputError
+from irsim.episodes.suitability import suited_policies
 from irsim.policies.description import describe_policy, list_policies
+from irsim.policies.scene_cards import SCENE_CARDS
+from irsim.scenario.yaml.rewrite import yaml_flow
 
 __all__ = ["policies"]
 
@@ -26,11 +31,20 @@ def policies(
     name: Annotated[
         str | None, typer.Argument(help="Describe this policy: a name, or a file (model.npz).", show_default=False)
     ] = None,
+    scene: Annotated[
+        str | None,
+        typer.Option("--for", metavar="FILE", help="Rank policies by how well they suit this scenario, with reasons."),
+    ] = None,
     imports: Imports = None,
     json_output: Json = False,
 ) -> None:
-    """List the policies that can drive robots, or describe one: what it observes, returns and controls."""
+    """List the policies that can drive robots, describe one, or say which of them suit a scenario (--for)."""
     import_user_modules(imports)
+    if scene is not None:
+        if name is not None:
+            raise InputError("--for ranks all policies, so it takes no name", f"irsim policies --for {scene}")
+        _rank(scene, json_output)
+        return
     listed = list_policies() if name is None else [describe_policy(name)]
     if json_output:
         data = [asdict(one) for one in listed]
@@ -55,7 +69,7 @@ def policies(
     period = "every step" if one.decision_dt is None else f"every {one.decision_dt:g} s"
     facts = {
         "kind": one.kind, "returns": one.output, "class": one.knows, "knows": one.facts_known,
-        "needs": ", ".join(one.needs) or "nothing else",
+        "needs": ", ".join(one.needs) or "nothing else", "scenes": _scenes(one.name),
         "does not see": one.unseen, "drives": ", ".join(one.drives), "decides": period, "sha256": one.digest or "",
         "not installed": one.install or "",
         "options": "" if one.meanings else "; ".join(f"{key}: {value}" for key, value in one.options.items()),
@@ -68,6 +82,32 @@ def policies(
     for key, text in one.meanings.items():
         table.add_row(key, clean(f"{_default(one.options[key])}. {text}", 1000))
     out.print(table)
+
+
+def _scenes(name: str) -> str:
+    """The scenes on the card of a policy; empty without a card."""
+    card = SCENE_CARDS.get(name)
+    if card is None or card.origin != "trained":
+        return ""
+    return yaml_flow(card.model_dump(mode="json", exclude_defaults=True, exclude={"origin", "order", "cost"}))[1:-1]
+
+
+def _rank(file: str, json_output: bool) -> None:
+    """Print how well each policy suits a scenario, the best one first."""
+    ranked = suited_policies(read_scenario(file, strict=False)[0])
+    if json_output:
+        typer.echo(json.dumps([asdict(one) for one in ranked], indent=2, ensure_ascii=False))
+        return
+    out = console()
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for heading in ("policy", "fits", "why"):
+        table.add_column(heading, overflow="fold", no_wrap=heading != "why")
+    for one in ranked:
+        style = "bold cyan" if one.fits in ("yes", "partly") else "dim"
+        table.add_row(Text(one.policy, style), one.fits, clean(one.reason, 300))
+    out.print(table)
+    out.print(Text.assemble("\nbest: ", (clean(ranked[0].line, 300), "bold cyan")))
+    out.print("compare them here: irsim benchmark FILE --policies A,B")
 
 
 def _default(value: str) -> str:

@@ -15,7 +15,7 @@ SENTENCES = {
     "export": "Write recorded runs for other programs: tables, ROS 2 bags, datasets, cameras, scenes of other simulators.",
     "benchmark": "Compare policies: run every scenario with every policy and the same seeds, on all cores.",
     "suites": "List the bundled suites: benchmarks with fixed scenarios, seeds, horizon, protocol and policies.",
-    "policies": "List the policies that can drive robots, or describe one: what it observes, returns and controls.",
+    "policies": "List the policies that can drive robots, describe one, or say which of them suit a scenario (--for).",
     "train": "Train a policy for a task; needs the extra `learn`. Success is measured on seeds that are not trained on.",
     "export-policy": "Make a policy file of a training, with its model card and curve; needs the extra `learn`.",
     "convert": "Make a policy file of weights that others trained with PyTorch; no code of their file runs, and no torch.",

@@ -69,6 +69,10 @@ def validate(
             help="Seed for --simulate and --table. Default: the seed of the scenario, otherwise 0.",
         ),
     ] = None,
+    policy: Annotated[
+        str | None,
+        typer.Option(help="Warn where a scene is not one that this policy is for.", show_default=False),
+    ] = None,
     imports: Imports = None,
     max_objects: MaxObjects = None,
 ) -> None:
@@ -90,7 +94,9 @@ def validate(
         with progress(f"checking {file}"):
             try:
                 if kinds[file] == "a scenario":
-                    report, text = _check_file(file, text, fix, simulate, seed, not lenient, limits_for(max_objects))
+                    report, text = _check_file(
+                        file, text, fix, simulate, seed, not lenient, limits_for(max_objects), policy
+                    )
                 else:
                     report = suite_report(file) if kinds[file] == "a suite" else task_report(file)
                     if file in SUITES.names():  # a name, not a path
@@ -126,7 +132,14 @@ def _check_options(kinds: dict[str, str], **given: bool) -> None:
 
 
 def _check_file(
-    file: str, text: str | None, fix: bool, simulate: bool, seed: int | None, strict: bool, limits: Limits | None
+    file: str,
+    text: str | None,
+    fix: bool,
+    simulate: bool,
+    seed: int | None,
+    strict: bool,
+    limits: Limits | None,
+    policy: str | None = None,
 ) -> tuple[ValidationReport, str | None]:
     """Return the report on a scenario, a file or standard input, and its text; with ``fix``, on the repaired one."""
     path = None if file == "-" else file
@@ -142,7 +155,7 @@ def _check_file(
             text = mended
         elif fixes:
             write_atomically(Path(locate(file)), mended)
-    report = api.validate(path, text=text, strict=strict, simulate=simulate, seed=seed, limits=limits)
+    report = api.validate(path, text=text, strict=strict, simulate=simulate, seed=seed, policy=policy, limits=limits)
     report.fixes = fixes
     for item in report.findings:
         item.fix = fix_texts.get((item.code, item.path), item.fix)

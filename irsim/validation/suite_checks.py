@@ -10,7 +10,8 @@ from typing import Any
 from irsim.benchmarks.suite import Suite
 from irsim.benchmarks.suite_scenarios import expand, of_suite, placed, under_each_policy
 from irsim.diagnostics.diagnostic import Diagnostic
-from irsim.scenario.behavior_override import AS_WRITTEN
+from irsim.episodes.suitability import UNSUITED, unsuited
+from irsim.scenario.behavior_override import AS_WRITTEN, behavior_text
 from irsim.scenario.read import read
 from irsim.validation.feasibility.check import feasibility_findings
 
@@ -20,7 +21,7 @@ _BROKEN_BY_NOISE = frozenset({"exact-symmetry"})
 """Codes of warnings that do not matter where each seed moves the starts a little."""
 
 
-_OF_BEHAVIORS = frozenset({"exact-symmetry", "no-behavior"})
+_OF_BEHAVIORS = frozenset({"exact-symmetry", "no-behavior", UNSUITED})
 """Codes of what depends on the behavior of robots, which the policies of a suite replace."""
 
 
@@ -46,6 +47,10 @@ def suite_warnings(suite: Suite, file: Path) -> list[Diagnostic]:
             for item in _warnings(read(one.document(data), strict=True).diagnostics):
                 told.append((item, "" if (item.code, item.path) in known else f" under the policy {name!r}"))
         told += [(item, "") for item in written if item.code not in _OF_BEHAVIORS]
+        scenario = read(one.document(), strict=True).scenario
+        if scenario is not None:
+            texts = [behavior_text(policy) for policy in suite.policies.values()]
+            told += [(item, "") for text in texts for item in unsuited(text, scenario)]
         for item, under in told:
             if not (moved and item.code in _BROKEN_BY_NOISE):
                 shown = of_suite(item, one, suite)

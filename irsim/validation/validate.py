@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 from irsim.common.keywords import answers_misspelt
@@ -38,6 +39,7 @@ def validate(
     base_text: str | None = None,
     simulate: bool = False,
     seed: int | None = None,
+    policy: str | None = None,
     limits: Limits | None = None,
 ) -> ValidationReport:
     """Check a scenario without running it.
@@ -50,6 +52,7 @@ def validate(
         base_text: Text to compare with, instead of ``base``.
         simulate: Also simulate the first steps of a valid scenario: ``dry_run`` then summarises them.
         seed: Seed of the dry run and of the comparison; default: the scenario's own, else 0.
+        policy: Name of a policy that is to drive the robots: a warning says where the scene is not one that it is for.
         limits: Tighter or wider limits of the loader and of a run.
 
     Raises:
@@ -57,7 +60,8 @@ def validate(
         ValueError: Neither or both of ``path`` and ``text`` are given, or both of ``base`` and ``base_text``.
     """
     most = limits or DEFAULT_LIMITS
-    reading = read(document_of(path, text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
+    checks = partial(feasibility_findings, policy=policy)
+    reading = read(document_of(path, text, limits), strict=strict, limits=most, feasibility=checks)
     report = report_of(reading, str(path) if path is not None else "(text)")
     other: Reading | None = None
     if base is not None or base_text is not None:

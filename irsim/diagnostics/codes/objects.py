@@ -291,6 +291,12 @@ OBJECTS: dict[str, Code] = {
     "wander-outside": Code(
         "random goals outside the world", "Without range_low and range_high, goals are drawn within the world."
     ),
+    "policy-unsuited": Code(
+        "a policy outside the scenes that it is for",
+        "Each policy has a card with the scenes that it was trained in, or that its law is made for. A trained policy "
+        "knows nothing else: one that has never seen a pillar drives into it. 'irsim policies --for FILE' compares the "
+        "scene with all cards and ranks the policies; a benchmark measures them.",
+    ),
     "rvo-acce": Code(
         "rvo's acce is not per second",
         "The object's 'acce' is in m/s². The 'acce' of rvo is the change of velocity considered in one step, in m/s.",

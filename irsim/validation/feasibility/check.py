@@ -14,6 +14,7 @@ from irsim.validation.feasibility import (
     confined,
     door_jam,
     goal_clearance,
+    policies,
     random_placement,
     reachability,
     shared_goals,
@@ -30,10 +31,16 @@ _MAX_OBJECTS = 20_000
 """Scenarios with more objects are not checked."""
 
 
-def feasibility_findings(context: Context) -> Iterator[Finding]:
-    """Check whether the objects of a scenario without errors fit, and whether its robots can reach their goals."""
+def feasibility_findings(context: Context, policy: str | None = None) -> Iterator[Finding]:
+    """Check whether the objects of a scenario without errors fit, and whether its robots can reach their goals.
+
+    Args:
+        context: The scenario.
+        policy: Name of the policy that is to drive the robots; None: their own behaviors.
+    """
     if len(context.resolved.objects) > _MAX_OBJECTS or context.document.fatal:
         return
+    yield from policies.check(context, policy)
     drawn = scenes_of(context)
     yield from random_placement.check(context, drawn)
     movers = movers_of(context)
