@@ -23,6 +23,7 @@ from irsim.benchmarks.report.table import MISSING, TABLE, has_tables, write_tabl
 from irsim.benchmarks.roles import shared_with
 from irsim.benchmarks.stored import read_plan
 from irsim.common.files import code_of, write_atomically
+from irsim.common.text import plural
 from irsim.diagnostics.errors import ScenarioError
 from irsim.runs.files import RunError
 from irsim.runs.replay.export import replay
@@ -31,6 +32,7 @@ from irsim.scenario.limits import DEFAULT_LIMITS
 if TYPE_CHECKING:
     from irsim.policies.policy import Policy
     from irsim.results.benchmark import BenchmarkResult, EpisodeRow
+    from irsim.results.run import RunResult
 
 __all__ = ["MARKDOWN", "PAGE", "REPLAYS", "TABLE", "Report", "record_episode", "write_report"]
 
@@ -100,26 +102,39 @@ def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: Bench
     label = policy_labels(result)[one.behavior]
     words = re.sub(r"[^\w.-]+", "-", f"{one.scenario}-{label}").strip("-.")  # a policy may be the path of a file
     name = f"{words[-MAX_NAME:]}-{one.seed}.html"
-    failed = ", ".join(f"{robot}: {how}" for robot, how in list(one.failures.items())[:3])
-    caption = f"{one.scenario}, {label}, seed {one.seed}: {one.outcome} after {one.sim_time:.1f} s ({failed})"
     replayed = _replay(scenario, one, plan, policy, folder / REPLAYS / name)
-    return Shown(caption, png, f"{REPLAYS}/{name}" if replayed else "")
+    caption = f"seed {one.seed}: {_how_it_failed(one, replayed)} ({one.scenario}, {label})"
+    return Shown(caption, png, "" if replayed is None else f"{REPLAYS}/{name}")
 
 
-def _replay(scenario: PlannedScenario, one: EpisodeRow, plan: Plan, policy: Policy, target: Path) -> bool:
-    """Run an episode again, and write its replay; False if a map cannot be copied."""
+def _how_it_failed(one: EpisodeRow, replayed: RunResult | None) -> str:
+    """The first robot that failed, how and when, and how many others did."""
+    robot, how = next(iter(one.failures.items()), ("", one.outcome))
+    times = [
+        event.time for event in (replayed.events if replayed is not None else ())
+        if event.kind == "collision" and robot in (event.object, event.partner)
+    ]  # fmt: skip
+    hit = how.startswith("collision")
+    when = f"at {times[0]:.1f} s" if hit and times else f"after {one.sim_time:.1f} s"
+    words = how.replace("collision", "collided") if hit else "had not arrived"
+    others = f", and {plural(len(one.failures) - 1, 'other')} failed" if len(one.failures) > 1 else ""
+    return f"{robot} {words} {when}{others}".strip()
+
+
+def _replay(scenario: PlannedScenario, one: EpisodeRow, plan: Plan, policy: Policy, target: Path) -> RunResult | None:
+    """Run an episode again, and write its replay; None if a map cannot be copied."""
     target.parent.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as place:
-        if not record_episode(scenario, one.seed, plan, policy, Path(place) / "run", steps=one.steps):
-            return False
-        replay(Path(place) / "run", target)
-    return True
+        again = record_episode(scenario, one.seed, plan, policy, Path(place) / "run", steps=one.steps)
+        if again is not None:
+            replay(Path(place) / "run", target)
+    return again
 
 
 def record_episode(
     scenario: PlannedScenario, seed: int, plan: Plan, policy: Policy, target: Path, *, steps: int | None = None
-) -> bool:
-    """Run an episode of a plan again, and record it into a new folder; False if a map cannot be copied.
+) -> RunResult | None:
+    """Run an episode of a plan again, and record it into a new folder; None if a map cannot be copied.
 
     Args:
         scenario: Its scenario.
@@ -133,13 +148,12 @@ def record_episode(
     with tempfile.TemporaryDirectory() as place:
         try:
             source = {"text": scenario.text} if scenario.folder is None else {"path": _copied(scenario, Path(place))}
-            run(
+            return run(
                 **source, seed=seed, steps=plan.steps if steps is None else steps, strict=plan.strict,
                 imports=plan.imports, record=target, policy=policy, perturb=plan.perturb or None, until=until,
             )  # fmt: skip
         except ScenarioError:
-            return False
-    return True
+            return None
 
 
 def _copied(scenario: PlannedScenario, place: Path) -> Path:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import io
+import re
+import statistics
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from irsim.benchmarks.report.rows import families, policy_labels, protocols, series
 from irsim.benchmarks.summary import is_summary
-from irsim.common.text import escape_marks
+from irsim.common.text import clean, escape_marks
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow
 
 if TYPE_CHECKING:
@@ -46,7 +48,10 @@ def charts(result: BenchmarkResult) -> list[tuple[str, str]]:
 
 
 def _drawn(draw: Any) -> str:
-    """A chart as SVG without a date and with the same names of its parts every time."""
+    """A chart as SVG without a date and with the same names of its parts every time.
+
+    Parts whose name is made by :func:`_tip` have a title, which a pointer shows. Black parts have the colour of text.
+    """
     import matplotlib
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
@@ -65,7 +70,22 @@ def _drawn(draw: Any) -> str:
         target = io.StringIO()
         figure.savefig(target, format="svg", metadata={"Date": None, "Creator": None}, transparent=True)
     text = escape_marks(target.getvalue())
+    text = re.sub(rf'<g id="{_TIP}([^"]*)">', r"<g><title>\1</title>", text).replace("#000000", "currentColor")
     return text[text.index("<svg") :]
+
+
+_TIP = "tip: "
+"""Beginning of the names of parts that have a title."""
+
+
+def _tip(text: str) -> str:
+    """The name of a part of a chart that has a title."""
+    return _TIP + clean(text, 300).replace('"', "'")
+
+
+def _percent(rate: float, low: float | None, high: float | None) -> str:
+    """A share with its interval."""
+    return f"{rate:.0%}" if low is None or high is None else f"{rate:.0%} ({low:.0%} to {high:.0%})"
 
 
 def _against(ax: Axes, result: BenchmarkResult, scenes: Sequence[tuple[Any, str]]) -> None:
@@ -75,6 +95,10 @@ def _against(ax: Axes, result: BenchmarkResult, scenes: Sequence[tuple[Any, str]
         rows = series(result, [name for _, name in scenes], behavior)
         xs, color = range(len(rows)), COLORS[place % len(COLORS)]
         ax.plot(xs, [row.success.rate for row in rows], marker="o", markersize=4, label=label, color=color)
+        for x, row in zip(xs, rows, strict=True):
+            share = _percent(row.success.rate, row.success.low, row.success.high)
+            tip = _tip(f"{row.scenario}, {label}: success {share}")
+            ax.plot([x], [row.success.rate], marker="o", markersize=7, color=color, gid=tip)
         low = [row.success.rate if row.success.low is None else row.success.low for row in rows]
         high = [row.success.rate if row.success.high is None else row.success.high for row in rows]
         ax.fill_between(xs, low, high, alpha=0.15, color=color, linewidth=0)
@@ -97,6 +121,9 @@ def _distribution(ax: Axes, labels: dict[str, str], episodes: Sequence[EpisodeRo
     boxes = ax.boxplot(values, **sideways, widths=0.6, showfliers=False, patch_artist=True)
     for place, box in enumerate(boxes["boxes"]):
         box.set_facecolor(COLORS[place % len(COLORS)])
+        label, own = list(labels.values())[place], values[place]
+        middle = f"median {statistics.median(own):.2f}, {min(own):.2f} to {max(own):.2f}" if own else "no value"
+        box.set_gid(_tip(f"{label}, {heading}: {middle} ({len(own)} episodes)"))
         box.set_alpha(0.6)
     for line in boxes["medians"]:
         line.set_color("black")
@@ -123,6 +150,9 @@ def _paired(ax: Axes, result: BenchmarkResult) -> None:
             [mean for mean, _, _ in points], at, xerr=[[m - a for m, a, _ in points], [b - m for m, _, b in points]],
             fmt="o", markersize=4, color=color, label=labels[behavior], capsize=2, linewidth=1,
         )  # fmt: skip
+        for y, name, (mean, low, high) in zip(at, [n for n in scenes if n in own], points, strict=True):
+            tip = _tip(f"{name}, {labels[behavior]}: {mean:+.2f} ({low:+.2f} to {high:+.2f})")
+            ax.plot([mean], [y], marker="o", markersize=7, color=color, gid=tip)
     ax.axvline(0, color="grey", linewidth=0.8)
     ax.set_yticks(range(len(scenes)), scenes, fontsize=7)
     ax.invert_yaxis()

@@ -27,8 +27,10 @@ from irsim.benchmarks.report.markdown import (
     zones_of,
 )
 from irsim.benchmarks.report.rows import RANKS, policy_labels
+from irsim.common.hashing import digest
 from irsim.common.text import clean
 from irsim.results.benchmark import BenchmarkResult
+from irsim.runs.page_colors import scheme_rules
 
 __all__ = ["Shown", "page"]
 
@@ -80,7 +82,23 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
         "<h2>Run it again</h2>", f"<pre>{_shown(result.reproduce)}</pre><p>{_shown(program_of(result))}</p>",
         f"<h2>Cite this run</h2><p>{_shown(citation_of(result))}</p>",
     ]  # fmt: skip
-    return _SHELL.format(title=title, body="\n".join(filter(None, parts)))
+    allowed = base64.b64encode(bytes.fromhex(digest(_SORT.encode()))).decode()
+    body, colors = "\n".join(filter(None, parts)), scheme_rules(_COLORS)
+    return _SHELL.format(title=title, body=body, script=_SORT, hash=allowed, colors=colors)
+
+
+_COLORS = ("page", "card", "line", "ink", "muted", "near")
+"""Colours of the style `modern` that the page uses."""
+_WORDS = {
+    "n": "episodes", "spl": "success by path (SPL)", "human [m]": "nearest person [m]",
+    "discomfort": "time too close to people", "discomfort [m]": "distance when too close [m]",
+    "between steps": "contacts between steps",
+}  # fmt: skip
+"""Heading of a table in a file -> its words on the page; others are words already, or keys of metrics."""
+
+
+def _heading(text: str) -> str:
+    return _WORDS.get(text, text.replace("_", " "))
 
 
 def _shown(text: str) -> str:
@@ -97,34 +115,68 @@ def _table(table: Table) -> str:
         shown = [name if name != last else "", *cells]
         lines.append(f"<tr{mark}>" + "".join(f"<td>{_shown(cell)}</td>" for cell in shown) + "</tr>")
         last = name
-    head = "".join(f"<th>{_shown(text)}</th>" for text in headings)
+    head = "".join(
+        f'<th scope="col" aria-sort="none"><button type="button">{_shown(_heading(text))}</button></th>'
+        for text in headings
+    )
     return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
 
 
 def _episode(one: Shown) -> str:
     picture = f'<img alt="{_shown(one.caption)}" src="data:image/png;base64,{base64.b64encode(one.png).decode()}">'
-    link = f'<a href="{_shown(one.replay)}">{picture}</a>' if one.replay else picture
-    more = f' <a href="{_shown(one.replay)}">replay</a>' if one.replay else ""
-    return f'<figure class="episode">{link}<figcaption>{_shown(one.caption)}{more}</figcaption></figure>'
+    link = f'<a href="{_shown(one.replay)}" title="{_shown(one.caption)}">{picture}</a>' if one.replay else picture
+    told = f'<a href="{_shown(one.replay)}">{_shown(one.caption)}</a>' if one.replay else _shown(one.caption)
+    return f'<figure class="episode">{link}<figcaption>{told}</figcaption></figure>'
 
 
+_SORT = """
+for (const table of document.querySelectorAll("table")) {
+  const body = table.tBodies[0], heads = [...table.tHead.rows[0].cells];
+  for (const row of body.rows)  // rows below a scenario get its name, so that they can move
+    if (!row.cells[0].textContent) row.cells[0].textContent = row.previousElementSibling.cells[0].textContent;
+  heads.forEach((head, column) => head.firstChild.addEventListener("click", () => {
+    const down = head.getAttribute("aria-sort") === "ascending", sign = down ? -1 : 1;
+    for (const other of heads) other.setAttribute("aria-sort", "none");
+    head.setAttribute("aria-sort", down ? "descending" : "ascending");
+    const value = row => row.cells[column].textContent, number = text => parseFloat(text.replace(/,/g, ""));
+    const rows = [...body.rows].sort((a, b) => {
+      const [x, y] = [value(a), value(b)];
+      if (!x || !y) return (!x) - (!y);  // empty cells stay at the end
+      const [p, q] = [number(x), number(y)];
+      return sign * (isNaN(p) || isNaN(q) ? x.localeCompare(y, "en", { numeric: true }) : p - q);
+    });
+    body.append(...rows);
+    table.classList.add("sorted");
+  }));
+}
+"""
+"""Sorts a table by the column whose heading is clicked, or pressed with a key."""
 _SHELL = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><meta http-equiv="Content-Security-Policy"
-content="default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src 'unsafe-inline'">
+content="default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src 'unsafe-inline';
+script-src 'sha256-{hash}'">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
 <style>
-:root {{ color-scheme: light dark; --line: #ccc; --soft: #666; --back: #fff; --text: #111; }}
-@media (prefers-color-scheme: dark) {{ :root {{ --line: #444; --soft: #aaa; --back: #16181c; --text: #eee; }}
-  figure svg {{ background: #fff; border-radius: 6px; }} }}
+:root {{ color-scheme: light dark; }}
+{colors}
 body {{ font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 76rem; padding: 0 1rem;
-  background: var(--back); color: var(--text); }}
+  background: var(--page); color: var(--ink); }}
+a {{ color: var(--near); }}
 .wide {{ overflow-x: auto; }}
 table {{ border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px; }}
 th, td {{ padding: .2rem .7rem .2rem 0; text-align: left; white-space: nowrap; }}
-th {{ border-bottom: 1px solid var(--text); }}
-tr.first td {{ border-top: 1px solid var(--line); }}
-.small, figcaption, .note {{ color: var(--soft); font-size: 13px; }}
+th {{ border-bottom: 1px solid var(--ink); position: sticky; top: 0; }}
+th button {{ font: inherit; font-weight: 600; color: inherit; background: none; border: 0; padding: 0;
+  cursor: pointer; }}
+th button:focus-visible {{ outline: 2px solid var(--near); outline-offset: 2px; }}
+th[aria-sort=ascending] button::after {{ content: " \\2191"; }}
+th[aria-sort=descending] button::after {{ content: " \\2193"; }}
+tr.first td, .sorted td {{ border-top: 1px solid var(--line); }}
+figure svg text {{ fill: currentColor; }}
+figure svg g:has(> title) {{ cursor: help; }}
+@media print {{ .wide {{ overflow: visible; }} td, th {{ white-space: normal; }} }}
+.small, figcaption, .note {{ color: var(--muted); font-size: 13px; }}
 .charts {{ display: grid; grid-template-columns: repeat(auto-fit, minmax(min(30rem, 100%), 1fr)); gap: 1rem; }}
 figure {{ margin: 0 0 1rem; }}
 figure svg, figure img {{ width: 100%; height: auto; }}
@@ -133,5 +185,5 @@ pre {{ overflow-x: auto; padding: .6rem; border: 1px solid var(--line); border-r
 code {{ font-size: 13px; overflow-wrap: anywhere; }}
 </style></head><body>
 {body}
-</body></html>
+<script>{script}</script></body></html>
 """

@@ -1,0 +1,99 @@
+"""The page of a benchmark in Chromium: it sorts, fits a phone, follows the theme, and its charts answer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from irsim.api.benchmark_report import write_report
+from irsim.benchmarks.stored import run_plan
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.graphics.scene.theme import DARK, LIGHT
+from tests.browser import Watched
+
+pytestmark = pytest.mark.browser
+
+SUITE = """\
+suite: walls
+version: 1
+title: Robots among walls
+scenarios:
+  - name: wall
+    vary: {"robot[0].number": [1, 2, 3]}
+    scenario:
+      world: {width: 10, height: 10, time_limit: 12}
+      robot:
+        - number: 1
+          kinematics: {name: diff}
+          distribution: {name: circle, center: [5, 5, 0], radius: 4}
+      obstacle: [{name: wall, shape: {name: rectangle, length: 0.4, width: 2}, state: [5, 5, 0]}]
+seeds: {first: 0, count: 2}
+seconds: 12
+protocols: [freeze]
+policies: {dash: dash, orca: orca}
+"""
+READY = "document.querySelectorAll('th button').length > 0"
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("report")
+    (folder / "walls.yaml").write_text(SUITE, encoding="utf-8")
+    plan = suite_plan(str(folder / "walls.yaml"), seeds=2)
+    return write_report(run_plan(plan, folder / "run", workers=1), folder / "run").page
+
+
+def column(page: Any, number: int) -> list[str]:
+    cells: list[str] = page.evaluate(
+        f"[...document.querySelector('tbody').rows].map(row => row.cells[{number}].textContent)"
+    )
+    return cells
+
+
+def test_a_click_on_a_heading_sorts_and_says_so(report: Path, watched: Watched) -> None:
+    page = watched.open(report, READY)
+    headings = page.evaluate("[...document.querySelectorAll('thead')][0].innerText").split("\t")
+    assert [heading.strip() for heading in headings[:4]] == ["scenario", "policy", "episodes", "success"]
+    page.click("th:nth-child(4) button")
+    shares = [float(text.partition("%")[0]) for text in column(page, 3)]
+    assert shares == sorted(shares)
+    assert page.get_attribute("th:nth-child(4)", "aria-sort") == "ascending"
+    page.focus("th:nth-child(4) button")
+    page.keyboard.press("Enter")
+    assert page.get_attribute("th:nth-child(4)", "aria-sort") == "descending"
+    assert [float(text.partition("%")[0]) for text in column(page, 3)] == sorted(shares, reverse=True)
+    page.click("th:nth-child(2) button")
+    assert column(page, 1) == sorted(column(page, 1))
+    assert page.get_attribute("th:nth-child(4)", "aria-sort") == "none"
+    assert all(column(page, 0))  # each row says its scenario, wherever it has moved
+    assert not watched.problems
+
+
+def test_a_phone_scrolls_tables_and_not_the_page(report: Path, watched: Watched) -> None:
+    page = watched.open(report, READY)
+    page.set_viewport_size({"width": 390, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    wide = "document.querySelector('.wide')"
+    assert page.evaluate(f"{wide}.scrollWidth > {wide}.clientWidth && getComputedStyle({wide}).overflowX === 'auto'")
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
+def test_page_and_charts_have_the_colours_of_the_theme(report: Path, watched: Watched, theme: Any) -> None:
+    page = watched.open(report, READY)
+    page.emulate_media(color_scheme=theme.name)
+    back, text = page.evaluate(
+        "[getComputedStyle(document.body).backgroundColor, getComputedStyle(document.querySelector('svg text')).fill]"
+    )
+    for shown, wanted in ((back, theme.page), (text, theme.ink)):
+        assert [int(part) for part in shown[4:-1].split(",")] == [int(wanted[k : k + 2], 16) for k in (1, 3, 5)]
+
+
+def test_charts_and_replays_say_what_they_show(report: Path, watched: Watched) -> None:
+    page = watched.open(report, READY)
+    titles = page.evaluate("[...document.querySelectorAll('svg title')].map(title => title.textContent)")
+    assert any(title == "wall-2, dash: success 0%" for title in titles)
+    assert any("time to goal [s]: median" in title for title in titles)
+    captions = page.evaluate("[...document.querySelectorAll('.episode figcaption a')].map(link => link.textContent)")
+    assert any(text.startswith("seed 0: ") and "collided with 'wall' at " in text for text in captions)
