@@ -65,7 +65,8 @@ GUIDES: dict[str, Guide] = {
     ),
     "which-policy": Guide(
         "which policy avoids collisions best, and what it costs",
-        "Compare them in your own scene: success, collision and time-out have 95 % intervals, differences are those "
+        "`irsim policies --for FILE` ranks policies for your scene, and says why one trained elsewhere does not "
+        "suit it. Compare them there: success, collision and time-out have 95 % intervals, differences are those "
         "with the same seeds, and times of decisions come with the result. The MCP tool is benchmark, with "
         "scenarios and policies. For robots with a differential drive that cross a free square, take the suite "
         "random_polygons_v1, or one of its scenarios, such as random_polygons_v1/robots-10/freeze. Its tables with 5 "
