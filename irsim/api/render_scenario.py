@@ -238,11 +238,14 @@ def animate(
     recorder: Recorder | None = None,
     move: Callable[[int], None] | None = None,
     go_on: bool = False,
+    speed: float = 1.0,
+    follow: Progress | None = None,
 ) -> list[str]:
     """Run and show an environment, and write an animation of it; return the file that was written, if any.
 
     ``move`` moves it to a step instead, as a recorded run does, which goes on to the last step whatever happens.
-    ``go_on``: go on when every robot has arrived or stopped.
+    ``go_on``: go on when every robot has arrived or stopped. ``speed``: how many times as fast as in reality a window
+    shows it. ``follow`` is called after every step, like ``progress``.
     """
     env.save_ani = save is not None
     if save is not None:
@@ -259,9 +262,10 @@ def animate(
             env.step()
         if recorder is not None:
             recorder.write_if_due()
-        env.render(env.step_time)
-        if progress is not None:
-            progress(step + 1, steps)
+        env.render(env.step_time / speed)
+        for report in (follow, progress):
+            if report is not None:
+                report(step + 1, steps)
     if save is None:
         return []
     env.save_ani = False

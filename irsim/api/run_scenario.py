@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from irsim.bridges.connect import Connection
     from irsim.policies.catalog import PolicySource
     from irsim.scenario.resolve.resolved import ResolvedScenario
+    from irsim.simulation.simulation import Simulation
 
 __all__ = ["run"]
 
@@ -56,6 +57,7 @@ def run(
     imports: Sequence[str] = (),
     save: str | Path | None = None,
     show: bool = False,
+    speed: float = 1.0,
     record: bool | str | Path = False,
     export: str | Path | Sequence[str | Path] = (),
     overwrite: bool = False,
@@ -63,6 +65,7 @@ def run(
     connected: Callable[[str], None] | None = None,
     limits: Limits | None = None,
     progress: Progress | None = None,
+    watched: Callable[[Simulation, int], Progress] | None = None,
 ) -> RunResult:
     """Simulate one episode, until every robot has arrived or stopped, or the horizon is reached.
 
@@ -89,6 +92,7 @@ def run(
         imports: Modules to import first, for behaviors that they register.
         save: Also write an animation to this file (gif, mp4, apng, …).
         show: Also show the episode live in a window.
+        speed: How many times as fast as in reality the window shows it, as far as drawing can.
         record: Also record the run: True records to a folder below ``.irsim/runs`` of the current directory, which is
             deleted 24 hours after its last use; a path records to a new folder that is kept.
             :func:`irsim.runs.open_run` reads the recording.
@@ -98,6 +102,8 @@ def run(
         connected: Callback ``(sentence)``, called when all bridges are connected: with what, and when the run ends.
         limits: Limits of the loader and of the run.
         progress: Callback ``(steps_done, steps_total)``.
+        watched: Callback ``(simulation, greatest number of steps)``, called before the first step; the callback
+            ``(steps_done, steps_total)`` that it returns is called after every step.
 
     Raises:
         ScenarioError: The scenario has errors; ScenarioNotFoundError: there is no such file.
@@ -155,6 +161,7 @@ def run(
         until=until,
     )
     targets = _check_exports([export] if isinstance(export, (str, Path)) else export, overwrite=overwrite)
+    follow = None if watched is None else watched(simulation, horizon)
     with (
         _kept_or_temporary(record, targets) as kept,
         connect(env, opened) if opened else nullcontext() as connection,
@@ -169,11 +176,11 @@ def run(
         end = until if alone or env.robot_list else "time_limit"
         try:
             if save is None and not show:
-                advance(env, horizon, progress, until=end, recorder=recorder)
+                advance(env, horizon, progress, until=end, recorder=recorder, follow=follow)
             else:
                 env._env_plot.set_style(scenario.world.plot.style or DEFAULT_STYLE)
                 target, on = Path(save) if save is not None else None, end == "time_limit"
-                files = animate(env, horizon, target, progress, recorder, go_on=on)
+                files = animate(env, horizon, target, progress, recorder, go_on=on, speed=speed, follow=follow)
         except (PolicyLostError, BridgeLostError) as error:
             lost = error
         result = run_result(simulation, read_events(simulation), plan, files=files, lost=lost)

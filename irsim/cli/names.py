@@ -23,7 +23,8 @@ PANELS: dict[str, str] = {
     "Simulation": "--seed --seeds --steps --until --perturb --policy --policies --bridge --protocol --scenario "
     "--full --strict --import --max-objects",
     "Files": "--out --force --save-gif --record --record-to --export --submission --ros-map",
-    "Output": "--json --csv --show --verbose --require-success",
+    "Watching": "--watch --show --speed --port --no-browser",
+    "Output": "--json --csv --verbose --require-success",
     "Processes and time": "--workers --threads --cluster --resume --max-time",
 }
 """Group of options in the help of a long command -> its options; all others are in ``Options``."""

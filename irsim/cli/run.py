@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shlex
+import sys
+from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,7 +13,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from irsim import api
+from irsim import api, studio
 from irsim.cli.findings import import_user_modules, limits_for, print_warnings
 from irsim.cli.guard import FAILED, ended_in_order
 from irsim.cli.options import File, Imports, Json, MaxObjects, Perturb, Seed, Steps, Strict, Until
@@ -19,6 +21,7 @@ from irsim.cli.output import OUTCOME_COLORS, console, print_error, print_json, p
 from irsim.cli.run_seeds import run_all
 from irsim.common.files import check_suffix
 from irsim.common.text import clean, seconds
+from irsim.diagnostics.errors import InputError
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.benchmark import ending
 
@@ -49,7 +52,6 @@ def run(
     save_gif: Annotated[
         Path | None, typer.Option(metavar="PATH", help="Also write an animation: .gif, .mp4 or .apng.")
     ] = None,
-    show: Annotated[bool, typer.Option("--show", help="Show the simulation in a window.")] = False,
     strict: Strict = False,
     policy: Annotated[
         str | None,
@@ -99,6 +101,36 @@ def run(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite files of --export that exist.")] = False,
     max_objects: MaxObjects = None,
+    show: Annotated[bool, typer.Option("--show", help="Show the simulation in a window of Matplotlib.")] = False,
+    watch: Annotated[
+        bool,
+        typer.Option(
+            "--watch",
+            help="Show the run in a browser while it is simulated: pause, step, scrub, follow a robot. The page stays "
+            "when the run is over; Ctrl-C or closing it ends the command.",
+        ),
+    ] = False,
+    speed: Annotated[
+        float | None,
+        typer.Option(
+            min=0.1,
+            max=100,
+            help="With --watch or --show: how many times as fast as in reality. Default: 1.",
+            show_default=False,
+        ),
+    ] = None,
+    port: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            max=65535,
+            help="With --watch: port of the page on this machine. Default: a free one.",
+            show_default=False,
+        ),
+    ] = None,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="With --watch: print the address only, and open no browser.")
+    ] = False,
 ) -> None:
     """Simulate a scenario until every robot has arrived or collided, or the time limit is reached.
 
@@ -117,7 +149,8 @@ def run(
         "limits": limits_for(max_objects),
     }
     if seeds is not None:
-        single = {"--seed": seed, "--save-gif": save_gif, "--show": show, "--bridge": bridge, "--record-to": record_to}
+        single = {"--seed": seed, "--save-gif": save_gif, "--show": show, "--watch": watch, "--bridge": bridge}
+        single |= {"--record-to": record_to}
         run_all(
             file,
             seeds,
@@ -130,32 +163,58 @@ def run(
         return
     if show:
         _mention_missing_screen()
-    with ended_in_order(), progress("simulating" if save_gif is None else "simulating and drawing") as report:
-        if save_gif is not None:
-            check_suffix(save_gif, MOVING_SUFFIXES)
-        result = api.run(
-            file,
-            seed=seed,
-            bridges=bridge or (),
-            save=save_gif,
-            show=show,
-            record=record if record_to is None else record_to,
-            export=export or (),
-            overwrite=force,
-            progress=report,
-            **shared,
-            connected=None if json_output else partial(typer.echo, err=True),
-        )
-    if json_output:
-        print_json(result)
-    else:
-        print_warnings(result.warnings, file)
-        show_result(result, console())
+    window = _window(watch=watch, show=show, speed=speed, port=port, no_browser=no_browser)
+    with ended_in_order(), window or nullcontext():
+        with progress("simulating" if save_gif is None else "simulating and drawing") as report:
+            if save_gif is not None:
+                check_suffix(save_gif, MOVING_SUFFIXES)
+            result = api.run(
+                file,
+                seed=seed,
+                bridges=bridge or (),
+                save=save_gif,
+                show=show,
+                speed=speed or 1.0,
+                record=record if record_to is None else record_to,
+                export=export or (),
+                overwrite=force,
+                progress=report,
+                watched=None if window is None else window.follow,
+                **shared,
+                connected=None if json_output else partial(typer.echo, err=True),
+            )
+        if json_output:
+            print_json(result)
+        else:
+            print_warnings(result.warnings, file)
+            show_result(result, console())
+        if window is not None:
+            window.end(result)
+            sys.stdout.flush()
+            window.wait()
     if result.lost is not None:
         print_error(result.lost_code or "", f"{result.lost}; the run ended after {seconds(result.sim_time)}")
         raise typer.Exit(FAILED)
     if require_success and result.outcome != "success":
         raise typer.Exit(FAILED)
+
+
+def _window(
+    *, watch: bool, show: bool, speed: float | None, port: int | None, no_browser: bool
+) -> studio.Window | None:
+    """The page of --watch, None without it.
+
+    Raises:
+        InputError: An option needs --watch, or another one that is not given.
+    """
+    if not watch:
+        if port is not None or no_browser:
+            name = "--port" if port is not None else "--no-browser"
+            raise InputError(f"{name} is about the page of --watch", "add --watch, or leave it out")
+        if speed is not None and not show:
+            raise InputError("--speed is about what is shown", "add --watch or --show, or leave it out")
+        return None
+    return studio.Window(partial(typer.echo, err=True), port=port or 0, browser=not no_browser, speed=speed)
 
 
 def show_result(result: RunResult, out: Console, again: str | None = None) -> None:

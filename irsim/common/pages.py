@@ -1,6 +1,6 @@
 """Pages of one file, which need neither a network nor other files: a frame, a style sheet and a script of a folder.
 
-The modules of a folder become one script, each after the modules that it imports and without its ``import`` and
+Modules become one script, each after the modules that it imports and without its ``import`` and
 ``export`` statements, so a name at the top level of a module must be unique in all modules. Uses the standard library
 only: the MCP server serves the replay page without NumPy.
 """
@@ -40,11 +40,11 @@ def one_page(sources: Path, script: str, *policy: str, variables: str = "", **pa
     return re.sub(r"\{\{(\w+)\}\}", lambda match: values[match[1]], frame)
 
 
-def bundle(sources: Path) -> str:
-    """All modules of a folder as one script, each after the modules that it imports.
+def bundle(*sources: Path) -> str:
+    """The module ``main.js`` and all that it imports as one script, each module after the modules that it imports.
 
     Args:
-        sources: The folder, whose module ``main.js`` is the last one.
+        *sources: The folders of the modules; a module of the first folder goes before its namesakes in others.
     """
     done: dict[str, str] = {}
 
@@ -52,7 +52,8 @@ def bundle(sources: Path) -> str:
         if name in done:
             return
         done[name] = ""  # allows circular imports, as functions refer to each other only when they are called
-        text = (sources / f"{name}.js").read_text(encoding="utf-8")
+        path = next(file for folder in sources if (file := folder / f"{name}.js").is_file())
+        text = path.read_text(encoding="utf-8")
         for other in _IMPORT.findall(text):
             add(other)
         del done[name]

@@ -72,7 +72,13 @@ def _most_steps(objects: int, limits: Limits) -> tuple[int | None, str]:
 
 
 def advance(
-    env: Env, steps: int, progress: Progress | None, *, until: Until = "done", recorder: EpisodeRecorder | None = None
+    env: Env,
+    steps: int,
+    progress: Progress | None,
+    *,
+    until: Until = "done",
+    recorder: EpisodeRecorder | None = None,
+    follow: Progress | None = None,
 ) -> None:
     """Advance an environment, by default until every robot has arrived or stopped, or, without robots, all that moves.
 
@@ -82,17 +88,19 @@ def advance(
         progress: Callback ``(steps_done, steps_total)``.
         until: See :func:`irsim.run`.
         recorder: Records the steps.
+        follow: Callback ``(steps_done, steps_total)``, called after every step.
     """
     until_done, touches = until != "time_limit", until == "first_collision"
     nobody = not env.simulation.robots.any()
     ended = partial(is_over, env.simulation) if nobody else env.done
-    chunk = 1 if touches or (until_done and nobody) else _CHUNK_STEPS
+    chunk = 1 if touches or follow is not None or (until_done and nobody) else _CHUNK_STEPS
     done, over = 0, until_done and bool(ended())
     while done < steps and not over:
         done += max(1, env.advance(min(chunk, steps - done), until_done=until_done, recorder=recorder))
         over = (until_done and bool(ended())) or (touches and _has_collided(env))
-        if progress is not None:
-            progress(done, done if over else steps)  # the count ends at its total
+        for report in (follow, progress):
+            if report is not None:
+                report(done, done if over else steps)  # the count ends at its total
 
 
 def _has_collided(env: Env) -> bool:

@@ -15,6 +15,7 @@ CALLED_BY_OTHERS = {
     "expat": "doctype namespaced",
     "Matplotlib": "get_transforms get_window_title",
     "the MCP SDK": "methods pre_parse_json run_stdio_async",
+    "http.server": "do_GET do_POST handle_error log_message",
     "pickle": "persistent_id persistent_load",
     "shutil and os.walk": "inode is_junction",
     "typer": "on_broken_pipe",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import zlib
 from collections import Counter
 from collections.abc import Container, Mapping, Sequence
@@ -13,12 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.text import clean
-from irsim.objects.describe import describe_scene
 from irsim.runs.reading import Run
-from irsim.runs.replay.drawing import Columns, changes, folded, page_grid, page_objects, page_zones, quantised
+from irsim.runs.replay.drawing import Columns, folded
+from irsim.runs.replay.rows import (
+    add_flags,
+    add_goals,
+    add_poses,
+    flags_of,
+    page_event,
+    page_scene,
+    steps_between_rows,
+    travellers,
+)
 from irsim.runs.resimulation import initial_scene
 from irsim.scenario.limits import Limits
-from irsim.simulation.events import BETWEEN_STEPS, Event
+from irsim.simulation.events import Event
 from irsim.simulation.trace import Trace
 
 if TYPE_CHECKING:
@@ -26,10 +34,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Packed", "pack_run", "pack_trace"]
 
-FORMAT = 1
-"""Version of the packed format."""
-_MAX_POSES = 2_000_000
-"""Number of rows times moving objects; of longer runs the page shows every Nth step."""
 _MAX_EVENTS = 4000
 """Number of events that the page shows."""
 _RANKS = {
@@ -51,12 +55,6 @@ _MAX_RANGES = 2_000_000
 """Number of recorded ranges up to which the page shows them; of longer scans it computes the ranges."""
 _MAX_SCANS_BYTES = 700_000
 """Compressed size of the recorded scans up to which the page shows them."""
-_TURN_QUANTUM = 2.0**-11
-"""Resolution of headings [rad]."""
-_MIN_EXPONENT = -13
-"""Finest resolution of positions, as a power of two [m]."""
-_MAX_EXPONENT = -4
-"""Coarsest resolution of positions, as a power of two [m]."""
 _RANGE_STEPS = 4000
 """Number of steps into which the range of a sensor is divided."""
 
@@ -110,45 +108,28 @@ def pack_trace(trace: Trace, events: Sequence[Event], simulation: Simulation, ab
         about: The words of the page about the run: ``run_id``, ``title``, ``status``, ``outcome``, ``summary``,
             ``reason``, ``seed``, ``irsim`` and ``notes``.
     """
-    scene = describe_scene(simulation)
-    shapes, objects, lidars = page_objects(scene)
-    grid = page_grid(scene)
-    world, starts = simulation.scenario.world, simulation.start_step
     columns = Columns()
-    x, y = (float(value) for value in world.offset)
-    width, height = float(world.width), float(world.height)
+    scene, starts = page_scene(simulation, columns), simulation.start_step
+    objects, quantum = scene["objects"], scene["quanta"][0]
     moved = np.not_equal(trace.pose, trace.pose[:1]).any(axis=(0, 2))
     moving = np.flatnonzero(moved & ~np.isnan(trace.pose).all(axis=(0, 2)))
     for number, row in enumerate(moving.tolist()):
         objects[row]["track"] = number
-    rows, every = _rows(len(trace), len(moving))
-    quantum = 2.0 ** min(max(math.floor(math.log2(max(width, height) / 20_000)), _MIN_EXPONENT), _MAX_EXPONENT)
+    every = steps_between_rows(len(trace), len(moving))
+    rows = _rows(len(trace), every)
     columns.add("step", trace.step[rows], 2)
-    _add_poses(columns, _held(trace.pose)[np.ix_(rows, moving)], quantum)
+    add_poses(columns, _held(trace.pose)[np.ix_(rows, moving)], quantum)
     for number, item in enumerate(objects):
         item |= _presence(trace, number, int(starts[number]))
-    travellers = np.array([item["role"] == "robot" or "track" in item for item in objects], dtype=bool)
-    _add_goals(columns, np.where(travellers[:, None], trace.goal[rows], np.nan), quantum)
-    _add_flags(columns, trace, rows)
-    scans = _add_scans(columns, trace, rows, lidars)
-    if grid is not None:
-        columns.add("cells", grid.pop("runs"))
-        if "unknown" in grid:
-            columns.add("unknown", grid.pop("unknown"))
+    add_goals(columns, trace.goal[rows], travellers(objects), quantum)
+    add_flags(columns, flags_of(trace)[rows])
+    scans = _add_scans(columns, trace, rows, scene["lidars"])
     head = {
-        "format": FORMAT,
+        **scene,
         **about,
-        "step_time": trace.step_time,
         "last_step": int(trace.step[-1]),
         "every": every,
-        "world": [x, x + width, y, y + height],
-        "quanta": [quantum, _TURN_QUANTUM],
-        "shapes": shapes,
-        "objects": objects,
-        "lidars": lidars,
         "scans": scans,
-        "grid": grid,
-        "zones": page_zones(world.zones),
         **_events(events, trace, objects),
     }
     return Packed(columns.block(head), head)
@@ -180,45 +161,10 @@ def _held(pose: NDArray[np.float64]) -> NDArray[np.float64]:
     return pose
 
 
-def _rows(count: int, moving: int) -> tuple[NDArray[np.int64], int]:
-    """Rows of the trace that are shown, including the last one, and the number of steps between them."""
-    every = max(1, math.ceil(count * max(1, moving) / _MAX_POSES))
+def _rows(count: int, every: int) -> NDArray[np.int64]:
+    """Rows of the trace that are shown, including the last one."""
     rows = np.arange(0, count, every)
-    return (rows if rows[-1] == count - 1 else np.append(rows, count - 1)), every
-
-
-def _add_poses(columns: Columns, poses: NDArray[np.float64], quantum: float) -> None:
-    """Add ``x``, ``y``, ``heading`` (moving objects, rows); headings are unwrapped, so they exceed a full turn."""
-    columns.add("x", quantised(poses[:, :, 0].T, quantum), 2)
-    columns.add("y", quantised(poses[:, :, 1].T, quantum), 2)
-    headings = np.nan_to_num(poses[:, :, 2].T, posinf=0.0, neginf=0.0)
-    columns.add("heading", quantised(np.unwrap(headings, axis=1), _TURN_QUANTUM), 2)
-
-
-def _add_goals(columns: Columns, goal: NDArray[np.float64], quantum: float) -> None:
-    """Add ``goal_row``, ``goal_object``, ``goal_set``, ``goal_x``, ``goal_y``, ``goal_heading`` from that row on."""
-    row, of = changes([goal[:, :, axis] for axis in range(3)])
-    values = goal[row, of]
-    there: NDArray[np.bool_] = np.isfinite(values[:, 0]) & np.isfinite(values[:, 1])
-    keep = there | (row > 0)
-    columns.add("goal_row", row[keep], 1)
-    columns.add("goal_object", of[keep], 1)
-    columns.add("goal_set", there[keep])
-    for axis, name in enumerate(("goal_x", "goal_y")):
-        columns.add(name, quantised(values[keep, axis], quantum), 1)
-    columns.add("goal_heading", quantised(values[keep, 2], _TURN_QUANTUM), 1)
-
-
-def _add_flags(columns: Columns, trace: Trace, rows: NDArray[np.int64]) -> None:
-    """Add ``flag_row``, ``flag_object``, ``flags`` (1 arrived, 2 collided, 4 stopped): flags from a row on."""
-    flags = np.zeros((len(rows), len(trace.names)), dtype=np.int32)
-    for bit, is_set in ((1, trace.arrived), (2, trace.collided), (4, trace.stopped)):
-        flags[is_set[rows]] |= bit
-    row, of = changes([flags])
-    keep = (flags[row, of] != 0) | (row > 0)
-    columns.add("flag_row", row[keep], 1)
-    columns.add("flag_object", of[keep], 1)
-    columns.add("flags", flags[row, of][keep])
+    return rows if rows[-1] == count - 1 else np.append(rows, count - 1)
 
 
 def _add_scans(columns: Columns, trace: Trace, rows: NDArray[np.int64], lidars: list[dict[str, Any]]) -> str:
@@ -272,18 +218,7 @@ def _events(recorded: Sequence[Event], trace: Trace, objects: list[dict[str, Any
     left = Counter(event.kind for event in events)
     events = _most_important(events, {trace.names[k] for k, item in enumerate(objects) if item["role"] == "robot"})
     left.subtract(event.kind for event in events)
-    shown = [
-        [
-            event.step,
-            event.kind,
-            number[event.object],
-            number.get(event.partner, -1) if event.partner is not None else -1,
-            _number(event.x),
-            _number(event.y),
-            *_where(event),
-        ]
-        for event in events
-    ]
+    shown = [page_event(event, number) for event in events]
     return {"events": shown, "event_count": count, "left_out": {kind: most for kind, most in left.items() if most}}
 
 
@@ -302,17 +237,3 @@ def _most_important(events: list[Event], robots: Container[str]) -> list[Event]:
         count = min(len(places), _MAX_EVENTS - len(chosen))
         chosen += [places[k] for k in np.linspace(0, len(places) - 1, count).round().astype(int)]
     return [events[place] for place in sorted(chosen)]
-
-
-def _where(event: Event) -> list[Any]:
-    """The zone of an event and the direction in which a line is crossed, or the time within the step; else nothing."""
-    if event.kind in BETWEEN_STEPS:
-        return ["", round(event.time, 6)]
-    if event.zone is None:
-        return []
-    way = "" if event.direction is None else f" ({event.direction.replace('_', ' ')})"
-    return [clean(event.zone) + way]
-
-
-def _number(value: float) -> float:
-    return round(value, 3) if math.isfinite(value) else 0.0

@@ -21,7 +21,7 @@ from irsim.simulation.scene import Lidar, Look, SceneDescription
 if TYPE_CHECKING:
     from irsim.scenario.model.zones import Zone
 
-__all__ = ["Columns", "changes", "page_grid", "page_objects", "page_zones", "quantised"]
+__all__ = ["Columns", "Integers", "changes", "page_grid", "page_objects", "page_zones", "quantised"]
 
 _DECIMALS = 4
 """Decimals of coordinates."""
@@ -140,7 +140,8 @@ def _rounded(value: float) -> float:
 
 Integers = NDArray[np.int32]
 _MAX_INTEGER = 2**31 - 1
-_COMPRESSION_LEVEL = 9
+_SMALLEST = 9
+"""Level of compression of a page, which is written once and kept."""
 
 
 class Columns:
@@ -174,10 +175,10 @@ class Columns:
         self._list.append({"name": name, "shape": list(array.shape), "order": order})
         self._bytes.append(folded(array, order))
 
-    def block(self, head: dict[str, Any]) -> bytes:
-        """The compressed block."""
+    def block(self, head: dict[str, Any], level: int = _SMALLEST) -> bytes:
+        """The block, compressed with this level."""
         text = json.dumps({**head, "columns": self._list}, separators=(",", ":"), allow_nan=False).encode()
-        return zlib.compress(len(text).to_bytes(4, "little") + text + b"".join(self._bytes), _COMPRESSION_LEVEL)
+        return zlib.compress(len(text).to_bytes(4, "little") + text + b"".join(self._bytes), level)
 
 
 def folded(array: Integers, order: int) -> bytes:

@@ -14,13 +14,15 @@ __all__ = ["page"]
 _SOURCES = Path(__file__).with_name("web")
 
 
-def page(data: bytes | None = None, *, title: str = "irsim replay") -> str:
+def page(data: bytes | None = None, *, title: str = "irsim replay", feed: Path | None = None) -> str:
     """The page as text.
 
     Args:
         data: A packed run (:func:`irsim.runs.replay.data.pack_run`); without one the page asks its host for the run.
         title: Title of the window.
+        feed: Folder with another ``main.js``, which starts the player with a run that the server of the page sends.
     """
     content = "" if data is None else base64.b64encode(data).decode()
-    policy, variables = "img-src data:", css_variables()
-    return one_page(_SOURCES, bundle(_SOURCES), policy, variables=variables, title=html.escape(title), data=content)
+    script = bundle(*filter(None, [feed]), _SOURCES)
+    rules = ["img-src data:", *(["connect-src 'self'"] if feed else [])]
+    return one_page(_SOURCES, script, *rules, variables=css_variables(), title=html.escape(title), data=content)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import irsim.runs.replay.data as packing
+import irsim.runs.replay.rows as rows
 from irsim.bundled.templates import names
 from irsim.runs import Run, RunError, open_run
 from tests.episodes.test_between_steps import scene as tunnel
@@ -85,7 +86,7 @@ def test_scans_that_take_too_much_are_left_to_the_page(run: Run, monkeypatch: py
 
 
 def test_long_runs_are_thinned(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(packing, "_MAX_POSES", 100)
+    monkeypatch.setattr(rows, "_MAX_POSES", 100)
     head, columns = unpacked(packing.pack_run(run).data)
     steps = columns["step"].tolist()
     assert head["every"] > 1

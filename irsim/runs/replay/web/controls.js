@@ -12,9 +12,17 @@ const SWITCHES = { f: "follow", l: "lidar", t: "trails", g: "goals", n: "names" 
 const ZOOM = 1.3, CLICK = 4; // pixels a click may move
 const MANY = 10; // steps
 
+/** Have a speed in the list, in its place. */
+export function offerSpeed(speed) {
+  const options = [...$("speed").options];
+  if (options.some(({ value }) => Number(value) === speed)) return;
+  const after = options.find(({ value }) => Number(value) > speed) ?? null;
+  $("speed").add(element("option", { value: speed, textContent: `${speed}×` }), after);
+}
+
 export function listen(player, actions) {
   const { seek, toggle, goToEvent, flip, choose, setSpeed, theme, refresh } = actions;
-  $("speed").append(...SPEEDS.map((speed) => element("option", { value: speed, textContent: `${speed}×` })));
+  SPEEDS.forEach(offerSpeed);
   $("play").addEventListener("click", toggle);
   $("back").addEventListener("click", () => seek(Math.ceil(player.shown.at) - 1));
   $("ahead").addEventListener("click", () => seek(Math.floor(player.shown.at) + 1));
@@ -78,8 +86,9 @@ export function listen(player, actions) {
   }
 
   function faster(way) {
-    const place = SPEEDS.indexOf(player.shown.speed) + way;
-    if (SPEEDS[place]) setSpeed(SPEEDS[place]);
+    const { speed: now } = player.shown;
+    const next = way > 0 ? SPEEDS.find((speed) => speed > now) : SPEEDS.findLast((speed) => speed < now);
+    if (next) setSpeed(next);
   }
 
   function nextRobot(way) {

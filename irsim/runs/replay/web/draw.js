@@ -157,7 +157,7 @@ function drawTrails(context, run, at, camera, colors, ratio, from, to, width) {
 
 /** A line through the rows of a track, without points that are closer together than can be seen; how many it has. */
 function trace(context, run, track, from, to, dense, most = Infinity) {
-  const base = track * run.rows, limit = dense * dense;
+  const base = track * run.stride, limit = dense * dense;
   let points = 0;
   let px = run.x[base + from], py = run.y[base + from];
   context.moveTo(px, py);

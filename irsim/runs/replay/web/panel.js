@@ -8,29 +8,57 @@ const NONE = -1;
 
 export function fillPanel(player, goToEvent) {
   const { run } = player, { head } = run;
-  document.title = `${head.title} · irsim replay`;
+  document.title = `${head.title} · irsim ${head.growing ? "run" : "replay"}`;
   $("title").textContent = $("title").title = head.title;
-  const badge = $("outcome");
-  badge.hidden = false;
-  badge.textContent = head.outcome ?? head.status;
-  badge.className = `badge ${head.outcome ?? ""}`;
-  $("facts").textContent = $("facts").title = factsOf(run);
   unfold(false);
-  const lacks = (head.notes ?? []).join("; ");
-  note($("recordnote"), lacks && `This run: ${lacks}.`);
-  $("events").style.setProperty("--time", `${seconds(run.time[run.rows - 1]).length}ch`);
   const movers = run.objects.filter(({ track, role }) => track >= 0 && role !== "robot").map(({ index }) => index);
   $("robot").replaceChildren(
     element("option", { value: NONE, textContent: "none" }),
     ...[...run.robots, ...movers].map((index) => element("option", { value: index, textContent: run.objects[index].name })),
   );
   $("view").setAttribute("aria-label", `The world from above: ${run.robots.length} robots, ${run.objects.length - run.robots.length} other objects`);
-  const listed = run.events.length, left = Object.entries(head.left_out ?? {});
-  $("eventshead").textContent = `Events (${listed < head.event_count ? `${listed} of ` : ""}${head.event_count})`;
-  note($("leftout"), left.length ? `Not listed, evenly over time: ${left.map(([kind, count]) => `${count} ${manyWords(kind)}`).join(", ")}.` : "");
   player.goToEvent = goToEvent;
+  showRun(player);
+}
+
+/** How the run ended, what its record lacks, and its events. */
+export function showRun(player) {
+  const { run } = player, { head } = run, badge = $("outcome");
+  badge.hidden = false;
+  badge.textContent = head.outcome ?? head.status;
+  badge.className = `badge ${head.outcome ?? ""}`;
+  sayFacts(run);
+  const lacks = (head.notes ?? []).join("; "), left = Object.entries(head.left_out ?? {});
+  note($("recordnote"), lacks && `This run: ${lacks}.`);
+  note($("leftout"), left.length ? `Not listed, evenly over time: ${left.map(([kind, count]) => `${count} ${manyWords(kind)}`).join(", ")}.` : "");
   listEvents(player, 0);
-  $("time").max = run.rows - 1;
+  measureRun(run);
+}
+
+/** What depends on the length of the run and on the number of its events. */
+function measureRun({ head, events, rows, time }) {
+  $("time").max = rows - 1;
+  $("events").style.setProperty("--time", `${seconds(time[rows - 1]).length}ch`);
+  $("eventshead").textContent = `Events (${events.length < head.event_count ? `${events.length} of ` : ""}${head.event_count})`;
+}
+
+/** Show that a run has become longer, which had so many events before. */
+export function growPanel(player, before) {
+  const { run, listed, listedFrom } = player, count = run.events.length, list = $("events");
+  measureRun(run);
+  sayFacts(run);
+  if (count === before) return;
+  if (!before) {
+    listEvents(player, 0);
+    return;
+  }
+  if (listedFrom + listed.length < before) list.lastChild.remove(); // how many more there are
+  for (let place = listedFrom + listed.length; place < Math.min(count, listedFrom + LISTED); place++) {
+    listed.push(eventButton(player, run.events[place]));
+    list.append(element("li", {}, listed.at(-1)));
+  }
+  const more = count - listedFrom - listed.length;
+  if (more) list.append(element("li", {}, element("p", { textContent: `… ${more} more` })));
 }
 
 function note(place, text) {
@@ -57,23 +85,31 @@ export function offerMore() {
 
 /** List the events from a place on. */
 function listEvents(player, first) {
-  const { run, goToEvent } = player, list = $("events"), count = run.events.length;
+  const { run } = player, list = $("events"), count = run.events.length;
   const last = Math.min(count, first + LISTED), held = list.contains(document.activeElement);
-  const buttons = run.events.slice(first, last).map((event) => {
-    const className = `${event.kind}${ofRobot(run, event) ? "" : " other"}`, button = element("button", { type: "button", className },
-      element("i"), element("time", { textContent: seconds(event.time) }), element("span", { textContent: eventWords(run, event) }));
-    button.addEventListener("click", () => goToEvent(event));
-    return button;
-  });
+  const buttons = run.events.slice(first, last).map((event) => eventButton(player, event));
   const before = first ? [element("p", { textContent: `… ${first} before` })] : [];
   const after = count > last ? [element("p", { textContent: `… ${count - last} more` })] : [];
-  const none = count ? [] : [element("p", { textContent: "Nothing happened." })];
+  const none = count ? [] : [element("p", { textContent: run.growing ? "Nothing has happened yet." : "Nothing happened." })];
   list.replaceChildren(...[...before, ...buttons, ...after, ...none].map((part) => element("li", {}, part)));
   Object.assign(player, { listed: buttons, listedFrom: first, current: null, heldFocus: held });
 }
 
-function factsOf({ head, robots }) {
-  const facts = [head.reason ?? head.summary, `${robots.length} robot${robots.length === 1 ? "" : "s"}`, `seed ${head.seed}`];
+function eventButton({ run, goToEvent }, event) {
+  const className = `${event.kind}${ofRobot(run, event) ? "" : " other"}`, button = element("button", { type: "button", className },
+    element("i"), element("time", { textContent: seconds(event.time) }), element("span", { textContent: eventWords(run, event) }));
+  button.addEventListener("click", () => goToEvent(event));
+  return button;
+}
+
+function sayFacts(run) {
+  $("facts").textContent = $("facts").title = factsOf(run);
+  offerMore();
+}
+
+function factsOf({ head, robots, growing, time, rows }) {
+  const far = growing && `simulated until ${seconds(time[rows - 1])} of at most ${seconds(head.horizon * head.step_time)}`;
+  const facts = [far || head.reason || head.summary, `${robots.length} robot${robots.length === 1 ? "" : "s"}`, `seed ${head.seed}`];
   if (head.every > 1) facts.push(`one in ${head.every} steps is shown`);
   return facts.filter(Boolean).join(" · ");
 }

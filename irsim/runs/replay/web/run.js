@@ -7,9 +7,12 @@ const STANDING = 1e-4; // metres per row
 
 export function makeRun({ head, columns }) {
   const [quantum, turn] = head.quanta;
+  const count = head.objects.length;
   const run = {
     head,
+    growing: Boolean(head.growing),
     rows: columns.step.length,
+    stride: columns.step.length, // from one track to the next
     time: Float64Array.from(columns.step, (step) => step * head.step_time),
     step: columns.step,
     x: scaled(columns.x, quantum),
@@ -17,19 +20,15 @@ export function makeRun({ head, columns }) {
     heading: scaled(columns.heading, turn),
     objects: head.objects,
     robots: [],
-    goals: changesOf(columns.goal_row, columns.goal_object, head.objects.length),
-    goalSet: columns.goal_set,
-    goalX: scaled(columns.goal_x, quantum),
-    goalY: scaled(columns.goal_y, quantum),
-    goalHeading: scaled(columns.goal_heading, turn),
-    flagged: changesOf(columns.flag_row, columns.flag_object, head.objects.length),
-    flags: columns.flags,
+    goals: makeChanges(count),
+    flagged: makeChanges(count),
     lidars: new Map(),
     cells: head.grid ? cellsOf(head.grid, columns.cells, columns.unknown) : null,
     paths: head.shapes.map(pathOf),
     zones: (head.zones ?? []).map((zone) => ({ ...zone, path: pathOf(zone) })),
     reach: head.shapes.map(reachOf),
   };
+  addAllChanges(run, columns, 0);
   head.objects.forEach((object, index) => {
     object.index = index;
     object.track ??= -1;
@@ -43,11 +42,65 @@ export function makeRun({ head, columns }) {
     if (!run.lidars.has(lidar.object)) run.lidars.set(lidar.object, []);
     run.lidars.get(lidar.object).push(lidar);
   }
-  run.events = head.events.map(([step, kind, object, partner, x, y, where = "", within]) => ({
-    row: within === undefined ? rowOfStep(run, step) : rowOfTime(run, within), // within a step: between two rows
-    time: within ?? step * head.step_time, step, kind, object, partner, x, y, where,
-  })).sort((one, other) => one.row - other.row);
+  run.events = eventsOf(run, head.events);
   return run;
+}
+
+/** Append the rows, changes and events of a block to a run that grows. */
+export function extendRun(run, { head, columns }) {
+  const before = run.rows, more = columns.step.length, [quantum, turn] = run.head.quanta;
+  reserve(run, before + more);
+  run.rows += more;
+  run.step = appended(run.step, columns.step);
+  run.time = appended(run.time, columns.step, run.head.step_time);
+  for (const [name, unit] of [["x", quantum], ["y", quantum], ["heading", turn]]) {
+    const values = scaled(columns[name], unit);
+    for (let track = 0; track * more < values.length; track++) {
+      run[name].set(values.subarray(track * more, (track + 1) * more), track * run.stride + before);
+    }
+  }
+  addAllChanges(run, columns, before);
+  for (const [index, bounds] of head.bounds) {
+    const object = Object.assign(run.objects[index], bounds);
+    object.first = rowOfStep(run, object.from ?? 0);
+  }
+  run.events.push(...eventsOf(run, head.events));
+  run.head.event_count = head.event_count;
+  run.head.last_step = run.step[run.rows - 1];
+}
+
+/** Room for so many rows of every track. */
+function reserve(run, rows) {
+  if (rows <= run.stride) return;
+  const stride = Math.max(rows, 2 * run.stride, 64);
+  for (const name of ["x", "y", "heading"]) {
+    const tracks = run[name].length / run.stride, wider = new Float32Array(tracks * stride);
+    for (let track = 0; track < tracks; track++) {
+      wider.set(run[name].subarray(track * run.stride, track * run.stride + run.rows), track * stride);
+    }
+    run[name] = wider;
+  }
+  run.stride = stride;
+}
+
+/** A list of numbers and others after it, as a view of a buffer with room for more. */
+function appended(values, more, unit = 1) {
+  const length = values.length + more.length;
+  let all = values;
+  if (values.buffer.byteLength < length * values.BYTES_PER_ELEMENT) {
+    all = new values.constructor(2 * length);
+    all.set(values);
+  }
+  all = new values.constructor(all.buffer, 0, length);
+  for (let i = 0; i < more.length; i++) all[values.length + i] = more[i] * unit;
+  return all;
+}
+
+function eventsOf(run, events) {
+  return events.map(([step, kind, object, partner, x, y, where = "", within]) => ({
+    row: within === undefined ? rowOfStep(run, step) : rowOfTime(run, within), // within a step: between two rows
+    time: within ?? step * run.head.step_time, step, kind, object, partner, x, y, where,
+  })).sort((one, other) => one.row - other.row);
 }
 
 /** Whether an event is a contact that begins and ends within one step. */
@@ -55,24 +108,34 @@ export const isBetweenSteps = ({ kind }) => kind === "passed_through" || kind ==
 
 const scaled = (values, quantum) => Float32Array.from(values, (value) => value * quantum);
 
-/** Per object the range [from, to) of its changes, which are sorted by row. */
-function changesOf(rows, objects, count) {
-  const from = new Int32Array(count + 1);
-  for (const object of objects) from[object + 1]++;
-  for (let i = 0; i < count; i++) from[i + 1] += from[i];
-  return { rows, from };
+/** Changes of values of objects: the rows and values of all, and for each object the places of its own, by row. */
+const makeChanges = (count) => ({ rows: [], values: [], of: Array.from({ length: count }, () => []) });
+
+function addChanges(changes, rows, objects, shift, valueOf) {
+  for (let i = 0; i < rows.length; i++) {
+    changes.of[objects[i]].push(changes.rows.length);
+    changes.rows.push(rows[i] + shift);
+    changes.values.push(valueOf(i));
+  }
 }
 
-/** Place of the change that holds at a row, -1 before the first. */
-function changeAt({ rows, from }, object, row) {
-  let low = from[object], high = from[object + 1];
-  const first = low;
+function addAllChanges(run, columns, shift) {
+  const [quantum, turn] = run.head.quanta, { goal_set: set, goal_x: x, goal_y: y, goal_heading: heading, flags } = columns;
+  addChanges(run.goals, columns.goal_row, columns.goal_object, shift, (i) =>
+    set[i] ? { x: x[i] * quantum, y: y[i] * quantum, heading: heading[i] * turn } : null);
+  addChanges(run.flagged, columns.flag_row, columns.flag_object, shift, (i) => flags[i]);
+}
+
+/** The value that holds at a row, or what stands for none before the first change. */
+function valueAt({ rows, values, of }, object, row, none) {
+  const places = of[object];
+  let low = 0, high = places.length;
   while (low < high) {
     const middle = (low + high) >> 1;
-    if (rows[middle] <= row) low = middle + 1;
+    if (rows[places[middle]] <= row) low = middle + 1;
     else high = middle;
   }
-  return low > first ? low - 1 : -1;
+  return low ? values[places[low - 1]] : none;
 }
 
 function rowOfStep(run, step) {
@@ -110,7 +173,7 @@ export function poseAt(run, object, at, out = {}) {
     [out.x, out.y, out.heading] = pose;
     return out;
   }
-  const row = Math.min(Math.floor(at), run.rows - 1), share = at - row, i = track * run.rows + row;
+  const row = Math.min(Math.floor(at), run.rows - 1), share = at - row, i = track * run.stride + row;
   const j = share > 0 && row + 1 < run.rows ? i + 1 : i;
   out.x = run.x[i] + share * (run.x[j] - run.x[i]);
   out.y = run.y[i] + share * (run.y[j] - run.y[i]);
@@ -136,7 +199,7 @@ export const waits = (run, { until = 0 }, at) => stepAt(run, at) < until;
 export function speedAt(run, object, at) {
   const { track } = run.objects[object], row = Math.ceil(at);
   if (track < 0 || row === 0) return 0;
-  const i = track * run.rows + row;
+  const i = track * run.stride + row;
   return Math.hypot(run.x[i] - run.x[i - 1], run.y[i] - run.y[i - 1]) / (run.time[row] - run.time[row - 1]);
 }
 
@@ -144,21 +207,14 @@ export function speedAt(run, object, at) {
 export function courseAt(run, object, at, heading) {
   const { track } = run.objects[object], row = Math.max(1, Math.ceil(at));
   if (track < 0 || row >= run.rows) return heading;
-  const i = track * run.rows + row, dx = run.x[i] - run.x[i - 1], dy = run.y[i] - run.y[i - 1];
+  const i = track * run.stride + row, dx = run.x[i] - run.x[i - 1], dy = run.y[i] - run.y[i - 1];
   return Math.hypot(dx, dy) > STANDING ? Math.atan2(dy, dx) : heading;
 }
 
 /** Present goal as { x, y, heading }, or null. */
-export function goalAt(run, object, at) {
-  const change = changeAt(run.goals, object, Math.floor(at));
-  if (change < 0 || !run.goalSet[change]) return null;
-  return { x: run.goalX[change], y: run.goalY[change], heading: run.goalHeading[change] };
-}
+export const goalAt = (run, object, at) => valueAt(run.goals, object, Math.floor(at), null);
 
-export function flagsAt(run, object, at) {
-  const change = changeAt(run.flagged, object, Math.floor(at));
-  return change < 0 ? 0 : run.flags[change];
-}
+export const flagsAt = (run, object, at) => valueAt(run.flagged, object, Math.floor(at), 0);
 
 /** How far a shape gets from the origin of its object. */
 function reachOf({ circle, rings, line }) {
