@@ -244,14 +244,11 @@ def test_long_runs_are_thinned_and_keep_their_last_step(monkeypatch: pytest.Monk
     assert series["step"].tolist() == [*range(0, result.steps, 2), result.steps]
 
 
-@pytest.mark.slow(60)
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("name", templates.names())
-def test_every_template_can_be_watched(name: str, tmp_path: Path) -> None:
-    templates.copy(name, tmp_path / "scene.yaml")
+def test_every_template_can_be_watched(name: str) -> None:
     feed = Feed()
-    result = api.run(
-        tmp_path / "scene.yaml", steps=30, watched=lambda simulation, horizon: Follower(feed, simulation, horizon)
-    )
+    result = api.run(templates.scenario_file(name), steps=30, watched=lambda *given: Follower(feed, *given))
     assert joined(feed)[1]["step"][-1] == result.steps
 
 
