@@ -7,7 +7,6 @@ nothing, and POST needs an ``Origin``, which browsers send with it.
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import threading
@@ -16,6 +15,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any, TypeGuard
 
+from irsim.common.records import ContentError, read_json
 from irsim.diagnostics.errors import InputError
 from irsim.runs.replay.page import page
 from irsim.studio.access import Access
@@ -237,8 +237,8 @@ class _Handler(BaseHTTPRequestHandler):
 def _read(body: bytes) -> dict[str, Any]:
     """The object in a body; an empty one for anything else."""
     try:
-        given = json.loads(body)
-    except (ValueError, RecursionError):
+        given = read_json(body)
+    except ContentError:
         return {}
     return given if isinstance(given, dict) else {}
 
