@@ -90,9 +90,20 @@ def trace(data: dict[str, Any], steps: int) -> np.ndarray:
 
 
 def assert_equal(data: list[dict[str, Any]], steps: int) -> None:
-    first, *others = (trace(one, steps) for one in data)
+    """Runs are equal but for what a rounding error changes: who grazes a corner may turn now or a step later."""
+    first, *others = (trace(one, steps)[:, :2] for one in data)
+    if all(np.allclose(other, first, atol=EQUAL, rtol=0) for other in others):
+        return
+    rounded = np.max([np.abs(trace(one, steps)[:, :2] - first) for one in wrong_by_rounding(data[0])], axis=0)
     for k, other in enumerate(others, start=1):
-        np.testing.assert_allclose(other[:, :2], first[:, :2], atol=EQUAL, rtol=0, err_msg=f"spelling {k}")
+        assert np.all(np.abs(other - first) <= EQUAL + 2 * rounded.max(axis=1, keepdims=True)), f"spelling {k}"
+
+
+def wrong_by_rounding(data: dict[str, Any]) -> list[dict[str, Any]]:
+    """The scene with its obstacle moved by a few errors of a coordinate."""
+    x, y, turn = data["obstacle"]["state"]
+    errors = [(a * size, b * size) for size in (1e-15, 1e-14) for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1))]
+    return [{**data, "obstacle": {**data["obstacle"], "state": [x + a, y + b, turn]}} for a, b in errors]
 
 
 def random_box(rng: np.random.Generator) -> list[dict[str, Any]]:
@@ -113,10 +124,19 @@ def random_outline(rng: np.random.Generator) -> list[dict[str, Any]]:
 @pytest.mark.parametrize("drive", DRIVES)
 @for_all(8, seed=st.integers(0, 2**32 - 1))
 def test_every_spelling_gives_the_same_motion(behavior: str, drive: str, spellings: Any, seed: int) -> None:
+    assert_equal(random_scenes(behavior, drive, spellings, seed), 60)
+
+
+def test_a_grazed_corner_is_passed_alike_but_for_rounding() -> None:
+    assert_equal(random_scenes("avocado", "diff", random_box, 47773), 60)
+
+
+def random_scenes(behavior: str, drive: str, spellings: Any, seed: int) -> list[dict[str, Any]]:
+    """One wall at a random pose, in all its spellings."""
     rng = np.random.default_rng(seed)
     shapes = spellings(rng)
     pose = [*rng.uniform([6, 9], [8, 11]).tolist(), float(rng.uniform(-math.pi, math.pi))]
-    assert_equal([scene(behavior, drive, shape, pose) for shape in shapes], 60)
+    return [scene(behavior, drive, shape, pose) for shape in shapes]
 
 
 @pytest.mark.parametrize("local", ["dash", *BEHAVIORS])
