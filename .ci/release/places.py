@@ -37,7 +37,7 @@ VERSION_PLACES = {
 """Files -> patterns of the lines with the version, for which ``{}`` stands. A script may have no such line."""
 OWNER_PLACES = {
     "server.json": (r'"name": "io\.github\.{}/irsim-mcp"',),
-    "README.md": (r"<!-- mcp-name: io\.github\.{}/irsim-mcp -->",),
+    "README.md": (r"<!-- mcp-name: io\.github\.{}/irsim-mcp -->", r"https://{}\.github\.io/"),
     ".github/CODEOWNERS": (r"^\* @{}$",),
 }
 """Files -> patterns of the lines with the owner."""

@@ -78,7 +78,7 @@ def test_one_command_writes_every_place_and_nothing_else(copy: Path, new: str) -
         text = path.read_text(encoding="utf-8")
         assert text.count("\n") == old.count("\n")
         if path != copy / "CHANGELOG.md":
-            restored = text.replace(new, __version__).replace("io.github.some-lab/", f"io.github.{places.owner()}/")
+            restored = text.replace(new, __version__).replace("some-lab", places.owner())
             assert restored == old, path
     assert json.loads((copy / "server.json").read_text(encoding="utf-8"))["name"] == "io.github.some-lab/irsim-mcp"
     assert (copy / ".github/CODEOWNERS").read_text(encoding="utf-8").endswith("* @some-lab\n")

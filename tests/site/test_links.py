@@ -36,6 +36,13 @@ def test_links_and_anchors_lead_somewhere(html: Path) -> None:
     assert broken == []
 
 
+def test_the_readme_leads_to_pages_of_the_site(html: Path) -> None:
+    text = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
+    paths = re.findall(r"\]\(https://[^/]+\.github\.io/irsim/latest/([^)]+)\)", text)
+    assert len(paths) >= 4
+    assert [path for path in paths if not (html / path).is_file()] == []
+
+
 def test_pictures_and_players_are_there(html: Path) -> None:
     missing = [
         f"{name}: {source}"
