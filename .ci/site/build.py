@@ -125,7 +125,7 @@ def _indexes() -> Iterator[Page]:
     yield _index("bridges/index", "Bridges", about, [_about(page) for page in bridges])
     cases = ["evals/README", "evals/write-a-case"]
     yield _index("evals/index", "Evaluate agents", "Tasks that measure agents.", [_about(page) for page in cases])
-    project = ["CHANGELOG", "CONTRIBUTING", "AGENTS", "irsim/core/README", "irsim/compat/README"]
+    project = ["CHANGELOG", "CONTRIBUTING", "AGENTS", "irsim/core/README", "irsim/compat/README", "tests/speed/README"]
     yield _index("project/index", "Project", "How irsim is made.", [_about(page) for page in project])
     kinds = ("behavior", "kinematics", "sensor", "shape", "distribution", "map", "planner", "bridge")
     parts = [

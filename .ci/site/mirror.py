@@ -26,6 +26,7 @@ _OTHERS = {
     "evals/README.md": "How agents are evaluated",
     "evals/write-a-case.md": "Write a case",
     "irsim/core/README.md": "The core",
+    "tests/speed/README.md": "Speed",
     "irsim/compat/README.md": "All differences from IR-SIM 2.12",
 }
 """Single files -> title, where theirs says too little."""
