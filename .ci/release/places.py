@@ -159,6 +159,9 @@ def main() -> None:
     parser.add_argument("version", nargs="?", help="written into every place, such as 0.2.0 or 0.2.0rc1")
     parser.add_argument("--owner", help="written into every place, and so into the name in the MCP registry")
     parser.add_argument("--tag", help="fail unless this tag names the version that all places and the changelog have")
+    parser.add_argument(
+        "--owned-by", help="fail unless this is the owner in all places: who pushes the tag owns the name"
+    )
     parser.add_argument("--notes", action="store_true", help="print the section of the changelog, and nothing else")
     given = parser.parse_args()
     if given.version:
@@ -169,6 +172,10 @@ def main() -> None:
         print(f"owner {given.owner} in {count} places", file=sys.stderr)
     if given.tag:
         check_tag(given.tag)
+    if given.owned_by and given.owned_by.lower() != owner().lower():
+        raise SystemExit(
+            f"the repository belongs to {given.owned_by}, the places name {owner()}: write it with --owner"
+        )
     if given.notes:
         print(check_changelog(version()), end="")
     else:

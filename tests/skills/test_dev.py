@@ -170,8 +170,8 @@ def test_files_and_folders_it_names_exist() -> None:
 
 def test_the_steps_it_names_are_commands() -> None:
     noxfile = (ROOT / "noxfile.py").read_text(encoding="utf-8")
-    for name in re.findall(r"`nox -s\s+(\w+)`", BODY):
-        assert f"def {name}(" in noxfile
+    for name in re.findall(r"`nox -s\s+([\w-]+)", BODY):
+        assert f"def {name.replace('-', '_')}(" in noxfile
     assert (ROOT / "tests" / "mcp" / "golden" / "write.py").is_file()
     project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     assert "slow(seconds):" in project

@@ -4,10 +4,16 @@ pip calls the functions of PEP 517 and PEP 660 in this module (``build-backend``
 scikit-build-core, which requires CMake and ninja where they are missing. Where a C++ compiler is missing, this module
 requires the package ``ziglang``; scripts in a temporary folder make its clang look like an ordinary tool chain. The
 variables ``CXX``, ``CMAKE_TOOLCHAIN_FILE`` and ``CMAKE_ARGS`` with a compiler or tool chain in it are respected.
+
+The wheel of a release (``wheel.py-api=cp310``) is for all versions of Python and needs ``nanobind-backend``, which
+exists only for common platforms and only with the GIL. No other build needs it, so only the metadata of that wheel
+name it.
 """
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import importlib.util
 import os
 import shlex
@@ -17,6 +23,7 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
+import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,7 +33,6 @@ from scikit_build_core.build import (
     build_sdist,
     get_requires_for_build_sdist,
     prepare_metadata_for_build_editable,
-    prepare_metadata_for_build_wheel,
 )
 
 __all__ = [
@@ -44,6 +50,9 @@ ConfigSettings = Mapping[str, "str | list[str]"]
 
 ZIGLANG = "ziglang>=0.13,<0.18"
 """The compiler package; zig has no stable release yet, so only tested minor versions are allowed."""
+
+RUNTIME = "nanobind-backend>=1.0"
+"""What the module of a release leaves to another package."""
 
 ZIG_TOOLS = {
     # -mcpu=baseline: zig's own default is the CPU of this machine, which would make results depend on it.
@@ -75,8 +84,46 @@ def build_wheel(
     wheel_directory: str, config_settings: ConfigSettings | None = None, metadata_directory: str | None = None
 ) -> str:
     """Build a wheel into ``wheel_directory``; returns its file name."""
+    # scikit-build-core would refuse prepared metadata with a requirement that it does not know.
     with _compiler():
-        return skbuild.build_wheel(wheel_directory, _plain(config_settings), metadata_directory)
+        name = skbuild.build_wheel(wheel_directory, _plain(config_settings))
+    if "-abi3-" in name:
+        require_runtime(Path(wheel_directory, name))
+    return name
+
+
+def prepare_metadata_for_build_wheel(metadata_directory: str, config_settings: ConfigSettings | None = None) -> str:
+    """Write the metadata that the wheel will have; returns the name of their folder."""
+    name = skbuild.prepare_metadata_for_build_wheel(metadata_directory, _plain(config_settings))
+    folder = Path(metadata_directory, name)
+    if "-abi3-" in (folder / "WHEEL").read_text(encoding="utf-8"):
+        path = folder / "METADATA"
+        path.write_bytes(with_runtime(path.read_bytes()))
+    return name
+
+
+def with_runtime(metadata: bytes) -> bytes:
+    """Metadata of a package that also requires ``RUNTIME``; a second call changes nothing."""
+    line = f"Requires-Dist: {RUNTIME}\n".encode()
+    return metadata if line in metadata else metadata.replace(b"Requires-Dist: ", line + b"Requires-Dist: ", 1)
+
+
+def require_runtime(wheel: Path) -> None:
+    """Let a wheel require ``RUNTIME``: its metadata and their hash are replaced, everything else stays as it is."""
+    with zipfile.ZipFile(wheel) as archive:
+        entries = [(entry, archive.read(entry)) for entry in archive.infolist()]
+    [name] = [entry.filename for entry, _ in entries if entry.filename.endswith(".dist-info/METADATA")]
+    [metadata] = [with_runtime(data) for entry, data in entries if entry.filename == name]
+    digest = base64.urlsafe_b64encode(hashlib.sha256(metadata).digest()).rstrip(b"=").decode()
+    row = f"{name},sha256={digest},{len(metadata)}"
+    with zipfile.ZipFile(wheel, "w") as archive:
+        for entry, data in entries:
+            if entry.filename == name:
+                data = metadata
+            elif entry.filename.endswith(".dist-info/RECORD"):
+                rows = data.decode().splitlines()
+                data = "".join(f"{row if old.startswith(f'{name},') else old}\n" for old in rows).encode()
+            archive.writestr(entry, data)
 
 
 def build_editable(
