@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from irsim import _core as core
 from irsim.common.arrays import Floats
 from irsim.graphics.figure.dashes import SOLID, outline
+from irsim.graphics.scene.glyphs import GLOW
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Sector, Segments, Spots, Stroke
 from irsim.graphics.scene.style import Color
 
@@ -201,7 +202,7 @@ def without_glow(mark: Mark) -> list[Mark]:
 
 def _glow_level(away: float) -> float:
     """Opacity of a glow at a share of its reach, as the painter draws it."""
-    return (1.0 - 0.62 * away) * min(1.0, (1.0 - away) / 0.1)
+    return (1.0 - GLOW["fall"] * away) * min(1.0, (1.0 - away) / GLOW["soft"])
 
 
 def _ring(points: Floats) -> Path:

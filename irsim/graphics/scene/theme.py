@@ -10,6 +10,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
 from typing import Any, Literal
 
+from irsim.graphics.scene.glyphs import glyph_table
 from irsim.options.colors import rgb
 
 __all__ = ["DARK", "LIGHT", "THEMES", "Kind", "Shades", "Theme", "contrast", "css_variables", "hex_of", "mix", "seen"]
@@ -228,8 +229,11 @@ def hex_of(color: Any) -> str:
 
 
 def css_variables() -> str:
-    """Rules of a style sheet with the colours as variables: light by default, dark where ``data-theme`` says so."""
-    rules = []
+    """Rules of a style sheet with the colours as variables: light by default, dark where ``data-theme`` says so.
+
+    The variable ``--glyphs`` is a string with the table of signs (:func:`irsim.graphics.scene.glyphs.glyph_table`).
+    """
+    rules = [f":root {{ --glyphs: '{glyph_table()}'; }}\n"]
     for theme, selector in ((LIGHT, ":root"), (DARK, ':root[data-theme="dark"]')):
         values = ((_CSS_NAMES.get(name, name).replace("_", "-"), color) for name, color in theme.tokens.items())
         variables = " ".join(f"--{name}: {color};" for name, color in values)

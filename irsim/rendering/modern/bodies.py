@@ -9,6 +9,15 @@ from functools import lru_cache
 import numpy as np
 
 from irsim.graphics.scene.bodies import Pose, place
+from irsim.graphics.scene.glyphs import (
+    ARRIVED_SHARE,
+    DART,
+    EDGES,
+    FOOTPRINT,
+    PEOPLE,
+    SMALL_PERSON_U,
+    long_dart,
+)
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Stroke
 from irsim.graphics.scene.theme import Theme, mix
 from irsim.rendering.modern.frame import stroke
@@ -19,11 +28,6 @@ __all__ = ["STILL_Z", "dart", "moving_marks", "person_marks", "robot_marks", "st
 
 STILL_Z = 1.2
 _WALL_Z, _PERSON_Z, _ROBOT_Z = 1.5, 4.0, 4.3
-_EDGE, _STILL_EDGE, _RIM = 1.4, 1.2, 1.0
-_HALO_ROUND, _HALO_OTHER = 1.2, 1.7
-_SMALL_PERSON = 8.0
-"""A person with a smaller radius is drawn with fewer parts [u]."""
-_ARRIVED_SHARE = 0.45
 _POINTS = 32
 _WHEEL = (0.22, 0.09)
 """Length and width of a wheel, as shares of the length of the body."""
@@ -40,7 +44,7 @@ def still_marks(thing: Thing, theme: Theme) -> list[Mark]:
     if isinstance(body.geometry, Line):
         line = stroke(theme.wall, 2.0, plot.obj_linestyle)
         return [Mark(thing.number, "body", body.geometry, None, line, body.alpha, _WALL_Z)]
-    edge = stroke(thing.shades.edge, _STILL_EDGE, plot.obj_linestyle)
+    edge = stroke(thing.shades.edge, EDGES["still"], plot.obj_linestyle)
     return [Mark(thing.number, "body", body.geometry, thing.shades.fill, edge, body.alpha, STILL_Z)]
 
 
@@ -52,7 +56,7 @@ def moving_marks(thing: Thing, theme: Theme) -> list[Mark]:
     if isinstance(body.geometry, Line):
         line = stroke(thing.shades.fill, 2.0)
         return [Mark(thing.number, "body", body.geometry, None, line, body.alpha, _PERSON_Z)]
-    rim = stroke(theme.paper, _RIM)
+    rim = stroke(theme.paper, EDGES["person"])
     return [Mark(thing.number, "body", body.geometry, thing.shades.fill, rim, body.alpha, _PERSON_Z)]
 
 
@@ -63,19 +67,20 @@ def person_marks(thing: Thing, layout: Layout, theme: Theme) -> list[Mark]:
         return []
     number, fill, alpha = thing.number, thing.shades.fill, body.alpha
     pose: Pose = (*thing.drawn_at[:2], thing.course)
-    small = r * layout.scale < _SMALL_PERSON
+    small = r * layout.scale < SMALL_PERSON_U
+    glyph = PEOPLE["small" if small else "large"]
     marks = list[Mark]()
-    along, across, head, rims = (0.575, 1.05, 0.56, (0.5, 0.7)) if small else (0.525, 0.99, 0.50, (_RIM, _RIM))
-    if small:
-        fill = mix(fill, theme.person_head, 0.75)
-    else:
+    if not small:
         disc = Circle(*thing.drawn_at[:2], r)
-        marks.append(Mark(number, "halo", disc, fill, Stroke(None), 0.13 * alpha, _PERSON_Z))
-        marks.append(Mark(number, "halo", disc, None, stroke(fill, _RIM), 0.45 * alpha, _PERSON_Z))
-    shoulders = place(_ellipse(-0.12 * r, along * r, across * r), pose)
-    middle = place(Circle(0.18 * r, 0.0, head * r), pose)
-    marks.append(Mark(number, "body", shoulders, fill, stroke(theme.paper, rims[0]), alpha, _PERSON_Z))
-    marks.append(Mark(number, "head", middle, theme.person_head, stroke(theme.paper, rims[1]), alpha, _PERSON_Z))
+        marks.append(Mark(number, "halo", disc, fill, Stroke(None), FOOTPRINT["fill"] * alpha, _PERSON_Z))
+        rim = stroke(fill, EDGES["person"])
+        marks.append(Mark(number, "halo", disc, None, rim, FOOTPRINT["rim"] * alpha, _PERSON_Z))
+    fill = mix(fill, theme.person_head, glyph.own)
+    shoulders = place(_ellipse(-glyph.behind * r, glyph.along * r, glyph.across * r), pose)
+    middle = place(Circle(glyph.ahead * r, 0.0, glyph.head * r), pose)
+    edge, rim = (stroke(theme.paper, width) for width in glyph.rims)
+    marks.append(Mark(number, "body", shoulders, fill, edge, alpha, _PERSON_Z))
+    marks.append(Mark(number, "head", middle, theme.person_head, rim, alpha, _PERSON_Z))
     return marks
 
 
@@ -83,7 +88,7 @@ def robot_marks(thing: Thing, layout: Layout, theme: Theme) -> list[Mark]:
     """A robot with its true footprint, or a disc that is large enough to be seen, and a dart in it."""
     body, number, shades = thing.mark, thing.number, thing.shades
     arrived = thing.state == "arrived"
-    fill = mix(shades.fill, theme.paper, _ARRIVED_SHARE) if arrived else shades.fill
+    fill = mix(shades.fill, theme.paper, ARRIVED_SHARE) if arrived else shades.fill
     inner = shades.edge if arrived else shades.dart
     turned: Pose = (*thing.drawn_at[:2], thing.course)
     if body is None:
@@ -92,8 +97,8 @@ def robot_marks(thing: Thing, layout: Layout, theme: Theme) -> list[Mark]:
     disc = thing.is_round or thing.glyph_radius > thing.body.radius or isinstance(shape, Line)
     if disc:
         shape = Circle(*thing.drawn_at[:2], thing.glyph_radius)
-    halo = 2 * (_HALO_ROUND if disc else _HALO_OTHER) + _EDGE
-    width = float(own.obj_linewidth) if "obj_linewidth" in own.model_fields_set else _EDGE
+    halo = 2 * (EDGES["round_halo"] if disc else EDGES["other_halo"]) + EDGES["robot"]
+    width = float(own.obj_linewidth) if "obj_linewidth" in own.model_fields_set else EDGES["robot"]
     marks = [
         Mark(number, "halo", shape, None, stroke(theme.paper, halo), body.alpha, _ROBOT_Z - 0.02),
         Mark(number, "body", shape, fill, stroke(shades.edge, width, own.obj_linestyle), body.alpha, _ROBOT_Z),
@@ -113,11 +118,8 @@ def dart(r: float, half_length: float | None = None, middle: tuple[float, float]
         half_length: Half the length of a long body [m].
         middle: Middle of the body [m].
     """
-    tip = 0.86 * r if half_length is None else min(0.84 * half_length, 1.1 * r)
-    corners = np.array([(tip, 0.0), (-0.52 * r, 0.58 * r), (-0.24 * r, 0.0), (-0.52 * r, -0.58 * r)])
-    if half_length is not None and half_length < r:
-        corners *= half_length / r
-    return Region([corners + middle])
+    corners = [(x * r, y * r) for x, y in DART] if half_length is None else long_dart(r, half_length)
+    return Region([np.array(corners) + middle])
 
 
 def _wheels(thing: Thing, layout: Layout, theme: Theme, alpha: float) -> list[Mark]:

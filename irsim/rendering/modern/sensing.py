@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from irsim.graphics.scene.glyphs import GLOW
 from irsim.graphics.scene.scene import Beams, Line, Mark, Region, Sector, Spots, Stroke
 from irsim.graphics.scene.style import Palette
 from irsim.graphics.scene.theme import Theme, seen
@@ -17,7 +18,6 @@ from irsim.rendering.modern.things import Thing
 __all__ = ["fov_marks", "measures_velocity", "scan_marks"]
 
 _FOV_Z, _SCAN_Z, _HIT_Z, _STILL_HIT_Z, _DOPPLER_Z = 1.6, 1.7, 1.9, 4.1, 4.6
-_SCAN_ALPHA = {"light": 0.17, "dark": 0.30}
 _FEW_SCANS = 3
 _LEAST_ALPHA = 0.05
 _FULL_TURN = 2 * math.pi - 0.1
@@ -56,7 +56,7 @@ def scan_marks(beams: Beams, thing: Thing, layout: Layout, theme: Theme, *, scan
     if area and len(ends) > 2:
         whole = lidar.angle_max - lidar.angle_min >= _FULL_TURN
         ring = ends if whole else np.concatenate([[beams.origin], ends])
-        alpha = max(_SCAN_ALPHA[theme.name] * min(1.0, _FEW_SCANS / scans), _LEAST_ALPHA)
+        alpha = max(GLOW[theme.name] * min(1.0, _FEW_SCANS / scans), _LEAST_ALPHA)
         glow = (*beams.origin, float(lidar.range_max))
         marks.append(Mark(number, "scan", Region([ring]), color, Stroke(None), alpha, _SCAN_Z, glow))
     for beam, one, alpha in beams.highlights:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from irsim.graphics.scene.glyphs import BADGE_LINE, BADGES, RIM_U, RINGS, STAR
 from irsim.graphics.scene.scene import Circle, Line, Mark, Region
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern.frame import FRAME, stroke
@@ -22,12 +23,6 @@ MAX_TIMED = 8
 _MAX_STARS = 500
 """Number of the latest contacts that are drawn."""
 _SMALL_STAR, _CROWDED_STAR = 5.0, 4.0
-_RIM = 1.1
-_TIPS = 8
-_HOLLOW = 0.45
-"""Inner radius of a star, as a share of its radius."""
-_COLLIDED_RING, _COLLIDED_GAP = 2.2, 3.2
-_PICKED_RING, _PICKED_GAP = 2.0, 5.0
 _MANY_RING = 1.2
 _DIAGONAL = math.sqrt(0.5)
 _NEAR_STAR = 2.0
@@ -50,19 +45,18 @@ def star_marks(
     large = _CROWDED_STAR if level > 1 else layout.sizes.star
     for events, color, size in ((others, theme.muted, min(_SMALL_STAR, large)), (own, theme.danger, large)):
         for event in events[-_MAX_STARS:]:
-            star = Region([_star(layout.metres(size)) + np.array([event.x, event.y])])
-            marks.append(Mark(FRAME, "contact", star, color, stroke(theme.paper, _RIM), 1.0, _STAR_Z))
+            star = Region([np.array(STAR) * layout.metres(size) + (event.x, event.y)])
+            marks.append(Mark(FRAME, "contact", star, color, stroke(theme.paper, RIM_U), 1.0, _STAR_Z))
     return marks
 
 
 def state_marks(thing: Thing, layout: Layout, theme: Theme, *, level: int) -> list[Mark]:
     """A ring and a badge on the rim of a robot; what they mean differs by shape, not by colour alone."""
-    x, y, _ = thing.drawn_at
     number, marks = thing.number, list[Mark]()
-    rim = thing.glyph_radius if thing.is_round or thing.glyph_radius > thing.body.radius else thing.body.radius
+    x, y, rim = thing.around
     if thing.picked:
-        ring = Circle(x, y, rim + layout.metres(_PICKED_GAP))
-        marks.append(Mark(number, "ring", ring, None, stroke(theme.near, _PICKED_RING), 1.0, _RING_Z))
+        ring = Circle(x, y, rim + layout.metres(RINGS["picked"]["gap"]))
+        marks.append(Mark(number, "ring", ring, None, stroke(theme.near, RINGS["picked"]["width"]), 1.0, _RING_Z))
     colors = {"arrived": theme.good, "collided": theme.danger, "stopped": theme.warn}
     if not thing.state:
         return marks
@@ -71,30 +65,16 @@ def state_marks(thing: Thing, layout: Layout, theme: Theme, *, level: int) -> li
         ring = Circle(x, y, rim)
         return [*marks, Mark(number, "ring", ring, None, stroke(color, _MANY_RING), 1.0, _RING_Z)]
     if thing.state == "collided":
-        ring = Circle(x, y, rim + layout.metres(_COLLIDED_GAP))
-        marks.append(Mark(number, "ring", ring, None, stroke(color, _COLLIDED_RING), 1.0, _RING_Z))
+        ring = Circle(x, y, rim + layout.metres(RINGS["collided"]["gap"]))
+        marks.append(Mark(number, "ring", ring, None, stroke(color, RINGS["collided"]["width"]), 1.0, _RING_Z))
         assert thing.hit is not None
         if math.hypot(thing.hit.x - x, thing.hit.y - y) < _NEAR_STAR * rim:
             return marks  # one red sign is enough
     r = layout.metres(layout.sizes.badge)
     cx, cy = x + _DIAGONAL * rim, y + _DIAGONAL * rim
-    marks.append(Mark(number, "badge", Circle(cx, cy, r), color, stroke(theme.paper, _RIM), 1.0, _BADGE_Z))
-    line = stroke(theme.on, 0.24 * layout.sizes.badge)
-    for points in _SIGNS[thing.state]:
+    marks.append(Mark(number, "badge", Circle(cx, cy, r), color, stroke(theme.paper, RIM_U), 1.0, _BADGE_Z))
+    line = stroke(theme.on, BADGE_LINE * layout.sizes.badge)
+    for points in BADGES[thing.state]:
         shape = Line(np.array(points) * r + (cx, cy))
         marks.append(Mark(number, "sign", shape, None, line, 1.0, _BADGE_Z))
     return marks
-
-
-_SIGNS = {
-    "arrived": [[(-0.45, 0.0), (-0.12, -0.36), (0.48, 0.34)]],
-    "collided": [[(-0.36, -0.36), (0.36, 0.36)], [(-0.36, 0.36), (0.36, -0.36)]],
-    "stopped": [[(-0.22, -0.4), (-0.22, 0.4)], [(0.22, -0.4), (0.22, 0.4)]],
-}
-"""Lines of the signs in badges, in a disc of radius 1."""
-
-
-def _star(radius: float) -> np.ndarray:
-    angles = np.pi / _TIPS * np.arange(2 * _TIPS) + np.pi / 2
-    lengths = np.where(np.arange(2 * _TIPS) % 2, _HOLLOW * radius, radius)
-    return np.stack([lengths * np.cos(angles), lengths * np.sin(angles)], axis=1)

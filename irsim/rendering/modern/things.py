@@ -81,6 +81,16 @@ class Thing:
         """Half the shorter side of its body [m]."""
         return min(self.body.length, self.body.width) / 2
 
+    @property
+    def around(self) -> tuple[float, float, float]:
+        """Middle and radius of the circle around what is drawn of its body [m]."""
+        x, y, heading = self.drawn_at
+        if self.is_round or self.glyph_radius > self.body.radius:
+            return x, y, self.glyph_radius
+        across, up = self.body.middle
+        c, s = math.cos(heading), math.sin(heading)
+        return x + c * across - s * up, y + s * across + c * up, math.hypot(self.body.length, self.body.width) / 2
+
     def wants(self, key: str, default: bool = True) -> bool:
         """Whether a plot key, such as ``show_goal``, is on.
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import place
+from irsim.graphics.scene.glyphs import GOAL
 from irsim.graphics.scene.scene import Circle, Line, Mark, Region, Spots, Stroke
 from irsim.graphics.scene.theme import Theme, mix
 from irsim.objects.drawing.object_marks import trajectory_points
@@ -42,8 +43,7 @@ _BEAD, _BEAD_EDGE = 4.6, 1.1
 _STEP = 1.5
 """Least distance between points of a trail [u]."""
 _DASHES = (0, (3.6, 2.6))
-_PLAN_ALPHA, _GOAL_ALPHA = 0.85, 0.12
-_DOT = 0.36
+_PLAN_ALPHA = 0.85
 _OPEN_DOT = 6.0
 """Diameter of a goal where there are more than a few robots [u]."""
 _WAYPOINT, _WAYPOINT_EDGE = 5.0, 1.3
@@ -177,14 +177,14 @@ def goal_marks(thing: Thing, goals: list[Floats], layout: Layout, theme: Theme, 
     radius = max(thing.half_width, layout.metres(layout.sizes.goal[0]))
     disc = Circle(x, y, radius)
     marks = [
-        Mark(number, "goal", disc, color, Stroke(None), _GOAL_ALPHA, GOAL_Z),
+        Mark(number, "goal", disc, color, Stroke(None), GOAL["fill"], GOAL_Z),
         Mark(number, "goal", disc, None, stroke(color, layout.sizes.goal[1]), 1.0, GOAL_Z),
     ]
     if not math.isnan(heading) and thing.view.record.heading_counts([x, y, heading]):
-        sign = place(dart(0.8 * radius), (x, y, heading))
+        sign = place(dart(GOAL["dart"] * radius), (x, y, heading))
         marks.append(Mark(number, "goal", sign, color, Stroke(None), 1.0, GOAL_Z))
     else:
-        marks.append(Mark(number, "goal", Circle(x, y, _DOT * radius), color, Stroke(None), 1.0, GOAL_Z))
+        marks.append(Mark(number, "goal", Circle(x, y, GOAL["dot"] * radius), color, Stroke(None), 1.0, GOAL_Z))
     half = layout.metres(_WAYPOINT / 2)
     diamond = np.array([(0.0, -half), (half, 0.0), (0.0, half), (-half, 0.0)])
     edge = stroke(color, _WAYPOINT_EDGE)

@@ -14,12 +14,24 @@ import irsim
 from irsim.cli.app import app
 from irsim.common.files import TargetError
 from irsim.common.pages import bundle
+from irsim.graphics.scene import glyphs
+from irsim.graphics.scene.sizes import NORMAL
 from irsim.runs import Run, RunError, replay
 from irsim.runs.replay.page import page
 from tests.runs.replay.conftest import HOSTILE, recorded, scene
 from tests.runs.replay.reading import data_in, unpacked
 
 SOURCES = Path(replay.__file__).with_name("web")
+
+
+def test_the_signs_of_the_page_are_those_of_pictures() -> None:
+    text = page()
+    table = json.loads(re.findall(r"--glyphs: '([^']*)'", text)[0])
+    assert table["dart"] == [list(point) for point in glyphs.DART]
+    assert table["sizes"]["star"] == NORMAL.star
+    used = set(re.findall(r"GLYPHS\.(\w+)", bundle(SOURCES)))
+    assert used <= set(table)
+    assert str(glyphs.DART[0][0]) not in bundle(SOURCES), "shapes are written once"
 
 
 def test_modules_share_no_names() -> None:

@@ -6,6 +6,9 @@ const NAMES = [
 ];
 const SHADES = ["fill", "edge", "name", "dart"];
 
+/** Shapes and sizes of signs, which the style sheet has from the same table as pictures. */
+export const GLYPHS = JSON.parse(getComputedStyle(document.documentElement).getPropertyValue("--glyphs").trim().slice(1, -1));
+
 export function themeColors() {
   const root = document.documentElement, style = getComputedStyle(root);
   const colors = Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));

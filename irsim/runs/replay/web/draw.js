@@ -2,15 +2,15 @@
 
 import { inMetres, toPixels, toWorld } from "./camera.js";
 import { cellImage } from "./cells.js";
-import { rgbOf, shade } from "./colors.js";
-import { drawContacts } from "./contacts.js";
+import { GLYPHS, rgbOf, shade } from "./colors.js";
+import { crowding, drawContacts, drawGoal, drawMover, drawState, nameLift, write } from "./glyphs.js";
 import { makeLayer, showLayer, showTrails } from "./layer.js";
-import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, hasLeft, isAbsent, isMover, poseAt, rowOfTime, waits } from "./run.js";
+import { ARRIVED, flagsAt, goalAt, hasLeft, isAbsent, isMover, poseAt, rowOfTime } from "./run.js";
 import { scanAt } from "./scan.js";
 
 const DENSE = 2.5; // pixels between points of a trail
 const RECENT = 3; // seconds of a trail that stand out
-const LEAST = 3.5; // pixels: radius of the mark of what would be too small to be seen
+const NAMED = 12; // things that move, up to which all have names; else robots and what is picked
 const STEPS = [1, 2, 5];
 const AHEAD = 500; // points of the way that is still to come
 
@@ -42,9 +42,12 @@ export function drawFrame(context, drawing, run, shown, camera, colors, ratio, m
   if (shown.robot >= 0 && !drawWay(context, drawing, run, shown, camera, colors, ratio, key, most)) whole = false;
   if (shown.goals) drawGoals(context, run, shown, camera, colors, ratio);
   if (shown.lidar && shown.robot >= 0) drawScans(context, drawing, run, shown, camera, colors, ratio);
-  for (const object of run.movers) drawBody(context, run, object, at, shown, camera, colors, ratio);
+  const present = run.movers.filter((object) => object.shape >= 0 && !isAbsent(run, object, at));
+  for (const object of present) if (object.kind !== "robot") drawMover(context, run, object, at, camera, colors, ratio);
+  for (const object of present) if (object.kind === "robot") drawMover(context, run, object, at, camera, colors, ratio);
   drawContacts(context, run, at, camera, colors, ratio);
-  if (shown.names) drawNames(context, run, at, camera, colors, ratio);
+  for (const object of present) drawState(context, run, object, at, object.index === shown.robot, camera, colors, ratio);
+  if (shown.names) drawNames(context, run, at, shown.robot, camera, colors, ratio);
   drawScale(context, camera, colors, ratio);
   return whole;
 }
@@ -211,36 +214,19 @@ function drawGoals(context, run, shown, camera, colors, ratio) {
     if (!object.goal || object.shape < 0 || isAbsent(run, object, shown.at)) continue;
     const goal = goalAt(run, object.index, shown.at);
     if (!goal) continue;
-    const chosen = object.index === shown.robot, color = shade(colors, object, "edge"), px = 1 / camera.scale;
-    place(context, camera, ratio, goal);
-    context.globalAlpha = chosen ? 0.25 : 0.1;
-    context.fillStyle = color;
-    context.fill(run.paths[object.shape], "evenodd");
-    context.globalAlpha = chosen ? 1 : 0.6;
-    context.setLineDash([4 * px, 3 * px]);
-    context.strokeStyle = color;
-    context.lineWidth = (chosen ? 2 : 1) * px;
-    context.stroke(run.paths[object.shape]);
-    context.setLineDash([]);
-    const arm = Math.min(6 * px, 0.5 * object.radius);
+    const picked = object.index === shown.robot, px = 1 / camera.scale;
+    if (flagsAt(run, object.index, shown.at) & ARRIVED || (crowding(run) > 1 && !picked)) continue;
+    drawGoal(context, run, object, goal, picked, camera, colors, ratio);
+    if (!picked) continue;
+    const pose = poseAt(run, object.index, shown.at);
     context.beginPath();
-    context.moveTo(-arm, -arm);
-    context.lineTo(arm, arm);
-    context.moveTo(-arm, arm);
-    context.lineTo(arm, -arm);
+    context.moveTo(pose.x, pose.y);
+    context.lineTo(goal.x, goal.y);
+    context.setLineDash([2 * px, 6 * px]);
+    context.strokeStyle = shade(colors, object, "edge");
+    context.lineWidth = px;
     context.stroke();
-    if (chosen) {
-      const pose = poseAt(run, object.index, shown.at);
-      inMetres(context, camera, ratio);
-      context.beginPath();
-      context.moveTo(pose.x, pose.y);
-      context.lineTo(goal.x, goal.y);
-      context.setLineDash([2 * px, 6 * px]);
-      context.lineWidth = px;
-      context.stroke();
-      context.setLineDash([]);
-    }
-    context.globalAlpha = 1;
+    context.setLineDash([]);
   }
 }
 
@@ -251,71 +237,29 @@ function drawScans(context, drawing, run, shown, camera, colors, ratio) {
     drawing.scan = { key, all: (run.lidars.get(shown.robot) ?? []).map((lidar) => scanAt(run, lidar, shown.at)) };
   }
   inMetres(context, camera, ratio);
-  const px = 1 / camera.scale;
-  for (const { x, y, ends, hit } of drawing.scan.all) {
-    const beams = hit.length, dot = Math.min(2.2 * px, 0.06 + px);
-    context.fillStyle = context.strokeStyle = shade(colors, run.objects[shown.robot], "edge");
+  const px = 1 / camera.scale, color = shade(colors, run.objects[shown.robot], "edge"), { glow, sizes } = GLYPHS;
+  const [red, green, blue] = rgbOf(color), tint = (alpha) => `rgba(${red}, ${green}, ${blue}, ${alpha})`;
+  for (const { x, y, ends, hit, whole, reach } of drawing.scan.all) {
+    const area = context.createRadialGradient(x, y, 0, x, y, reach), most = glow[colors.theme];
+    for (const [at, share] of [[0, 1], [1 - glow.soft, 1 - glow.fall * (1 - glow.soft)], [1, 0]]) area.addColorStop(at, tint(most * share));
     context.beginPath();
-    for (let i = 0; i < beams; i++) {
-      context.moveTo(x, y);
-      context.lineTo(ends[2 * i], ends[2 * i + 1]);
-    }
-    context.globalAlpha = Math.min(0.4, Math.max(0.08, 24 / beams));
-    context.lineWidth = px;
-    context.stroke();
-    context.globalAlpha = 1;
+    if (!whole) context.moveTo(x, y);
+    for (let i = 0; i < hit.length; i++) context.lineTo(ends[2 * i], ends[2 * i + 1]);
+    context.fillStyle = area;
+    context.fill();
     context.beginPath();
-    for (let i = 0; i < beams; i++) {
-      if (hit[i]) context.rect(ends[2 * i] - dot, ends[2 * i + 1] - dot, 2 * dot, 2 * dot);
+    const dot = (sizes.hit / 2) * px;
+    for (let i = 0; i < hit.length; i++) {
+      if (!hit[i]) continue;
+      context.moveTo(ends[2 * i] + dot, ends[2 * i + 1]);
+      context.arc(ends[2 * i], ends[2 * i + 1], dot, 0, 2 * Math.PI);
     }
+    context.fillStyle = color;
     context.fill();
   }
 }
 
-function drawBody(context, run, object, at, shown, camera, colors, ratio) {
-  if (object.shape < 0 || isAbsent(run, object, at)) return;
-  const pose = poseAt(run, object.index, at), flags = flagsAt(run, object.index, at), px = 1 / camera.scale;
-  const color = shade(colors, object, "fill"), hit = flags & COLLIDED, rests = (flags & ARRIVED || waits(run, object, at)) && !hit;
-  const chosen = object.index === shown.robot;
-  if (chosen) {
-    inMetres(context, camera, ratio);
-    context.beginPath();
-    context.arc(pose.x, pose.y, object.radius + 5 * px, 0, 2 * Math.PI);
-    context.strokeStyle = colors.accent;
-    context.lineWidth = 2 * px;
-    context.stroke();
-  }
-  const edge = hit ? colors.danger : chosen ? colors.ink : colors.paper, small = object.radius < LEAST * px;
-  if (small) {
-    inMetres(context, camera, ratio);
-    context.beginPath();
-    context.arc(pose.x, pose.y, LEAST * px, 0, 2 * Math.PI);
-    context.fillStyle = hit ? colors.danger : color;
-    context.globalAlpha = rests ? 0.5 : 1;
-    context.fill();
-    context.globalAlpha = 1;
-    return;
-  }
-  const width = hit ? Math.min(3.5, 1 + 0.3 * object.radius * camera.scale) : 1;
-  paintShape(context, run, object, pose, camera, ratio, color, rests ? 0.4 : 1, rests ? color : edge, width);
-  if (!object.arrow && object.role !== "robot") return;
-  if (object.radius < 2 * LEAST * px) return;
-  const way = object.drive === "omni" ? courseAt(run, object.index, at, pose.heading) : pose.heading;
-  place(context, camera, ratio, { x: pose.x, y: pose.y, heading: way });
-  const size = Math.min(object.radius * 0.62, Math.max(object.radius * 0.4, 5 * px));
-  context.beginPath();
-  context.moveTo(size, 0);
-  context.lineTo(-0.55 * size, 0.6 * size);
-  context.lineTo(-0.2 * size, 0);
-  context.lineTo(-0.55 * size, -0.6 * size);
-  context.closePath();
-  context.globalAlpha = 0.9;
-  context.fillStyle = shade(colors, object, "dart");
-  context.fill();
-  context.globalAlpha = 1;
-}
-
-function drawNames(context, run, at, camera, colors, ratio) {
+function drawNames(context, run, at, picked, camera, colors, ratio) {
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.font = "12px system-ui, sans-serif";
   context.textBaseline = "bottom";
@@ -329,14 +273,12 @@ function drawNames(context, run, at, camera, colors, ratio) {
     context.strokeText(name, x, y - 2);
     context.fillText(name, x, y - 2);
   }
-  context.fillStyle = colors.ink;
   for (const object of run.objects) {
     if (!isMover(object) || isAbsent(run, object, at)) continue;
+    if (object.role !== "robot" && object.index !== picked && run.movers.length > NAMED) continue;
     const pose = poseAt(run, object.index, at), [x, y] = toPixels(camera, pose.x, pose.y);
     if (x < 0 || y < 0 || x > camera.width || y > camera.height) continue;
-    const away = 0.75 * object.radius * camera.scale + 2;
-    context.strokeText(object.name, x + away, y - away);
-    context.fillText(object.name, x + away, y - away);
+    write(context, object.name, x, y - nameLift(run, object, camera), shade(colors, object, "name"), colors);
   }
 }
 

@@ -19,7 +19,8 @@ export function scanAt(run, lidar, at) {
     ends[2 * beam] = x + length * dx;
     ends[2 * beam + 1] = y + length * dy;
   }
-  return { x, y, ends, hit, recorded: !near };
+  const whole = Math.abs(lidar.between) * lidar.beams > 2 * Math.PI - 0.1;
+  return { x, y, ends, hit, whole, reach: lidar.range_max, recorded: !near };
 }
 
 function recorded(run, lidar, beam, row) {

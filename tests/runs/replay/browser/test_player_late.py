@@ -37,7 +37,7 @@ def test_who_waits_is_pale_and_who_is_not_there_yet_is_not_drawn(workspace: Path
     def dark(x: float, y: float) -> float:
         settled(page)
         px, py = pixel_of(page, x, y)
-        return 255 - max(page.evaluate(SHARE, [px - 12, py - 12, 6, 6]))  # beside the middle, where goals have a cross
+        return 255 - max(page.evaluate(SHARE, [px - 3, py - 24, 6, 6]))  # above the middle, where there is no dart
 
     paper = dark(10.5, 3)
     scrub(page, 5)
