@@ -269,4 +269,5 @@ def animate(
     if save is None:
         return []
     env.save_ani = False
+    env._env_plot.add_last_frame()
     return [str(env._env_plot.save_animation(path=save))]

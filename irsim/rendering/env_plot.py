@@ -319,6 +319,12 @@ class EnvPlot(PlotFormat):
         """
         self._saving.add_frame(options)
 
+    def add_last_frame(self) -> None:
+        """Store the present picture for the animation unless its last frame shows it."""
+        if self._saving.recording.last_count != int(self.env.simulation.count[0]):
+            self.update()
+            self.add_frame()
+
     def save_animation(self, path: str | Path | None = None, **options: Any) -> Path | None:
         """Write the animation of the stored frames and drop them.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
+import time
 from pathlib import Path
 
 import numpy as np
@@ -55,10 +56,21 @@ robot:
 obstacle: [{shape: {name: rectangle, length: 0.4, width: 2}, state: [4, 2, 0]}]
 """
 
+CROWDED = """
+world: {width: 40, height: 40, step_time: 0.1}
+robot:
+  number: NUMBER
+  distribution: {name: circle, radius: 15, center: [20, 20]}
+  kinematics: {name: omni}
+  shape: {name: circle, radius: 0.3}
+  behavior: {name: orca}
+"""
 
+
+@pytest.mark.parametrize("theme", THEMES)
 @pytest.mark.parametrize("name", SIX)
-def test_texts_cover_neither_each_other_nor_what_moves(opened: Opened, name: str) -> None:
-    env, sizes = opened(name), TextSizes()
+def test_texts_cover_neither_each_other_nor_what_moves(opened: Opened, name: str, theme: str) -> None:
+    env, sizes = opened(name, theme), TextSizes()
     for steps in (0, 60, 60):
         take(env, steps)
         for side, printed in ((900.0, False), (480.0, False), (302.0, True)):
@@ -162,13 +174,64 @@ def test_bodies_have_their_size_and_small_ones_are_seen(opened: Opened) -> None:
         assert min(sizes.title, sizes.facts, sizes.name, sizes.foot_text) >= (9.4 if sizes is PRINT else 9)
 
 
+def test_a_body_has_its_size_in_pixels(opened: Opened) -> None:
+    pixels, layout = pixels_of(opened(ALONE.format(heading=0)), 480)
+    [[x, y]] = layout.places(np.array([(2.0, 2.0)])).tolist()
+    row, paper = pixels[int(layout.height - y)].astype(int), np.array(rgb(LIGHT.paper)) * 255
+    inside = np.flatnonzero(np.abs(row - paper).max(axis=1)[int(x) - 60 : int(x) + 60] > 60) + int(x) - 60
+    edge = 1.4 / 2
+    assert inside[0] == pytest.approx(x - 0.4 * layout.scale - edge, abs=1.0)
+    across = x - 0.4 * layout.scale, x + 0.4 * layout.scale
+    levels = np.abs(row - paper).max(axis=1)[: int(x)]
+    fill = levels[int(across[0]) + 3]
+    covered = levels[int(across[0]) - 4 : int(across[0]) + 3].clip(0, fill).sum() / fill
+    assert int(across[0]) + 3 - covered == pytest.approx(across[0] - edge, abs=0.5)
+
+
 def test_the_same_picture_at_another_resolution_differs_only_in_that(opened: Opened) -> None:
     env = opened("doorway")
     take(env, 30)
-    images = [Image.fromarray(pixels_of(env, 400, ratio)[0]).convert("L") for ratio in (1.0, 2.0)]
+    images = [Image.fromarray(pixels_of(env, 400, ratio)[0]).convert("L") for ratio in (1.0, 3.125)]
     half = images[0].width // 2, images[0].height // 2
-    one, other = (np.asarray(image.resize(half, Image.Resampling.BOX), float).ravel() for image in images)
-    assert np.corrcoef(one, other)[0, 1] > 0.95
+    one, other = (np.asarray(image.resize(half, Image.Resampling.BOX), float) for image in images)
+    assert similarity(one, other) > 0.95
+
+
+def similarity(one: np.ndarray, other: np.ndarray) -> float:
+    """Structural similarity (Wang and others, 2004) in windows of 7 x 7 pixels."""
+    some, others = (np.lib.stride_tricks.sliding_window_view(image, (7, 7)) for image in (one, other))
+    mean, mean_other = some.mean((2, 3)), others.mean((2, 3))
+    together = (some * others).mean((2, 3)) - mean * mean_other
+    flat, low = (0.01 * 255) ** 2, (0.03 * 255) ** 2
+    level = (2 * mean * mean_other + flat) / (mean**2 + mean_other**2 + flat)
+    return float((level * (2 * together + low) / (some.var((2, 3)) + others.var((2, 3)) + low)).mean())
+
+
+@pytest.mark.slow
+def test_a_frame_of_two_hundred_robots_takes_less_than_150_ms(opened: Opened) -> None:
+    env, times = opened(CROWDED.replace("NUMBER", "200")), []
+    for _ in range(12):
+        env.step()
+        start = time.process_time()
+        env._env_plot.frame()
+        times.append(time.process_time() - start)
+    assert min(times[2:]) < 0.15
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["crossing", "fmcw-watch"])
+def test_a_frame_of_a_busy_scene_takes_hardly_longer_than_a_classic_one(opened: Opened, name: str) -> None:
+    plots = [opened(name), opened(name)]
+    plots[1]._env_plot.set_style("classic")
+    times: list[list[float]] = [[], []]
+    for _ in range(30):
+        for env, taken in zip(plots, times, strict=True):
+            env.step()
+            start = time.process_time()
+            env._env_plot.frame()
+            taken.append(time.process_time() - start)
+    modern, classic = (min(taken[5:]) for taken in times)
+    assert modern < 2 * classic
 
 
 @pytest.mark.parametrize("name", ["crossing", "warehouse"])
@@ -248,18 +311,9 @@ def test_the_colours_of_the_table_are_exact_in_a_gif(tmp_path: Path) -> None:
 
 
 def test_many_robots_lose_names_plans_and_goals_before_bodies(opened: Opened) -> None:
-    text = """
-world: {width: 40, height: 40, step_time: 0.1}
-robot:
-  number: NUMBER
-  distribution: {name: circle, radius: 15, center: [20, 20]}
-  kinematics: {name: omni}
-  shape: {name: circle, radius: 0.3}
-  behavior: {name: orca}
-"""
     seen = {}
     for number in (6, 20, 60):
-        env = opened(text.replace("NUMBER", str(number)))
+        env = opened(CROWDED.replace("NUMBER", str(number)))
         take(env, 3)
         scene, _ = picture_of(env)
         counts = {part: len(marks_of(scene, part)) for part in ("dart", "plan", "goal")}
