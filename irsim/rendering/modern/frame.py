@@ -71,11 +71,11 @@ def ground_marks(layout: Layout, theme: Theme, *, walls: bool) -> list[Mark]:
     return marks
 
 
-def frame_marks(layout: Layout, theme: Theme) -> list[Mark]:
+def frame_marks(layout: Layout, theme: Theme, *, walls: bool) -> list[Mark]:
     """The page over everything that reaches out of the world, in whole pixels."""
     x0, x1, y0, y1 = layout.world
     corners = layout.places(np.array([(x0, y0), (x1, y1)])) * layout.ratio
-    out = layout.sizes.wall / 2 * layout.ratio
+    out = (layout.sizes.wall if walls else _EDGE) / 2 * layout.ratio
     (x0, y0), (x1, y1) = np.floor(corners[0] - out), np.ceil(corners[1] + out)
     right, top = layout.size
     page = page_color(layout, theme)

@@ -171,7 +171,7 @@ class ModernStyle:
         walls = self.simulation.scenario.world.boundary == "walls"
         self._layout = layout
         self._ground = frame.ground_marks(layout, self.theme, walls=walls)
-        self._page = frame.frame_marks(layout, self.theme)
+        self._page = frame.frame_marks(layout, self.theme, walls=walls)
         self._still.clear()
         self._parts.clear()
         self._maps.clear()
