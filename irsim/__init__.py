@@ -16,6 +16,7 @@ install()
 
 if TYPE_CHECKING:
     from irsim.api import diff, fix, render, run, validate
+    from irsim.api.run_controller import episodes
     from irsim.benchmarks import benchmark
     from irsim.bridges.connect import connect
     from irsim.bridges.export.export import export_run
@@ -55,6 +56,7 @@ __all__ = [
     "connect",
     "diff",
     "diff_runs",
+    "episodes",
     "export_run",
     "fix",
     "make",

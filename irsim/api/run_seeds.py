@@ -22,7 +22,7 @@ from irsim.scenario.read import read
 from irsim.validation.feasibility.check import feasibility_findings
 from irsim.validation.validate import warn_of_collisions
 
-__all__ = ["run_seeds"]
+__all__ = ["failed_seeds", "run_seeds", "seeds_summary"]
 
 _MAX_LISTED = 10
 """Number of seeds that the summary lists of each kind of failure."""
@@ -76,10 +76,10 @@ def run_seeds(
             break
     if not episodes and last is not None:
         raise last
-    left, failed = [] if same else chosen[len(episodes) + len(crowded) :], _failed(episodes)
+    left, failed = [] if same else chosen[len(episodes) + len(crowded) :], failed_seeds(episodes)
     return RunsResult(
         scenario=episodes[0].scenario,
-        summary=_summary(episodes, failed, crowded, left, same),
+        summary=seeds_summary(episodes, failed, crowded, left, same),
         failed=failed,
         crowded=crowded,
         not_run=left,
@@ -90,7 +90,7 @@ def run_seeds(
     )
 
 
-def _failed(episodes: Sequence[RunResult]) -> dict[str, list[int]]:
+def failed_seeds(episodes: Sequence[RunResult]) -> dict[str, list[int]]:
     """Seeds by outcome, of episodes that did not succeed."""
     failed: dict[str, list[int]] = {}
     for one in episodes:
@@ -99,13 +99,22 @@ def _failed(episodes: Sequence[RunResult]) -> dict[str, list[int]]:
     return failed
 
 
-def _summary(
+def seeds_summary(
     episodes: Sequence[RunResult],
     failed: dict[str, list[int]],
     crowded: Sequence[int],
-    left: Sequence[int],
-    same: bool,
+    left: Sequence[int] = (),
+    same: bool = False,
 ) -> str:
+    """How many episodes succeeded, and which seeds failed.
+
+    Args:
+        episodes: The episodes.
+        failed: Seeds of those that did not succeed, by outcome.
+        crowded: Seeds that leave no room for an object.
+        left: Seeds for which there was no time.
+        same: Whether one episode stands for all seeds.
+    """
     good = len(episodes) - sum(map(len, failed.values()))
     if same:
         return f"{episodes[0].outcome}; nothing is random, so every seed gives this run (perturb varies its start)"

@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from irsim.benchmarks.policies import open_again
 from irsim.benchmarks.roles import role_metrics
@@ -35,6 +35,9 @@ from irsim.simulation.outcome import explored_share
 from irsim.simulation.roles import humans_of, travelling_humans
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import Trace, cut_trace, join_traces, next_rows, present_row, record
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 __all__ = [
     "Episode",
@@ -113,11 +116,12 @@ class Job:
     local: Policy | None = None
     maps: tuple[tuple[str, str], ...] = ()
 
-    @staticmethod
-    def of_data(data: dict[str, Any]) -> Job:
+    @classmethod
+    def of_data(cls, data: dict[str, Any]) -> Self:
         """The job of its fields as JSON types."""
         pairs = {key: tuple((name, value) for name, value in data[key]) for key in ("limits", "maps")}
-        return Job(**{**data, **pairs, "imports": tuple(data["imports"]), "perturb": tuple(data["perturb"])})
+        listed = {key: tuple(value) for key, value in data.items() if isinstance(value, list)}
+        return cls(**{**data, **listed, **pairs})
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import asdict
 from typing import Any
 
+from irsim.benchmarks.controlled import ControllerJob
 from irsim.benchmarks.episode import Job, Task
 from irsim.benchmarks.together import run_together
 from irsim.common.child import ONE_THREAD, Child, answers, lines, python, write_line
@@ -327,7 +328,8 @@ def main() -> None:
     while True:
         data = json.loads(tasks.get())
         try:
-            for result in run_together(Job.of_data(data["job"]), data["seeds"]):
+            kind = ControllerJob if "controller" in data["job"] else Job
+            for result in run_together(kind.of_data(data["job"]), data["seeds"]):
                 write_line(pipe, {"result": result})
         except Exception as error:
             write_line(pipe, {"error": f"{type(error).__name__}: {error}"})

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from irsim.benchmarks.controlled import ControllerJob, run_controlled
 from irsim.benchmarks.episode import Episode, Job, Task, crowded, environment_of, measure, policy_of, run_task
 from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
@@ -39,6 +40,9 @@ def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) 
     Yields:
         The result of each seed, in order.
     """
+    if isinstance(job, ControllerJob):
+        yield from run_controlled(job, seeds)
+        return
     scene, horizons = _scene(job, seeds)
     alone = list(seeds)
     if scene is not None and _fit_together(scene.simulation):

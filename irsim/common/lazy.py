@@ -27,6 +27,7 @@ PUBLIC_HOMES = {
     "connect": "irsim.bridges.connect",
     "diff": "irsim.api",
     "diff_runs": "irsim.runs.comparison",
+    "episodes": "irsim.api.run_controller",
     "export_run": "irsim.bridges.export.export",
     "fix": "irsim.api",
     "make": "irsim.env",

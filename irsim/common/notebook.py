@@ -73,7 +73,7 @@ class Page:
 
     Args:
         text: The page.
-        about: What it shows, in a few words.
+        about: A description in a few words.
         height: Height in the notebook [px].
     """
 
@@ -143,7 +143,7 @@ def picture(png: bytes, alt: str) -> str:
 
     Args:
         png: The content of a PNG file.
-        alt: What it shows, for people who do not see it.
+        alt: A description for people who do not see it.
     """
     return f'<img alt="{_text(alt)}" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
 

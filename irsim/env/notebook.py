@@ -1,4 +1,4 @@
-"""What environments and batches show in a notebook: a picture of the present, facts, and the replay of an episode."""
+"""Environments and batches in a notebook: a picture of the present, facts, and the replay of an episode."""
 
 from __future__ import annotations
 

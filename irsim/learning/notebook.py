@@ -1,4 +1,4 @@
-"""What environments of learning libraries show in a notebook."""
+"""Environments of learning libraries in a notebook: a picture of the first world, and facts."""
 
 from __future__ import annotations
 

@@ -286,6 +286,32 @@ class RunsResult(Result):
     version: str
     """Version of irsim."""
 
+    def to_pandas(
+        self,
+        rows: Literal["steps", "robots"] = "steps",
+        *,
+        objects: str | Sequence[str] = "movers",
+        ranges: bool = False,
+    ) -> Any:
+        """All episodes as one table of pandas.
+
+        Args:
+            rows: ``steps``: one row per step and object, as of each episode; ``robots``: one row per episode and robot,
+                with the facts of ``episodes[…].robots``.
+            objects: Which objects the rows of steps have: ``movers``, ``robots``, ``people``, ``all``, or names.
+            ranges: Whether the rows of steps have the ranges of lidars.
+
+        Raises:
+            ExtraError: pandas is missing.
+            InputError: There is no such kind of rows, or a run cannot be simulated again.
+        """
+        return call_home("irsim.api.kept_run:runs_table", self, rows, objects, ranges)
+
+    def _repr_html_(self) -> str:
+        columns = ("seed", "outcome", "simulated [s]", "reason")
+        rows = [(one.seed, one.outcome, one.sim_time, one.reason) for one in self.episodes]
+        return section(f"{self.scenario}: {self.summary}", table(columns, rows))
+
     @property
     def shown(self) -> RunResult:
         """The first episode that failed, else the first one."""

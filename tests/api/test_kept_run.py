@@ -1,4 +1,4 @@
-"""What a result of ``irsim.run`` offers later: its table, from its recording or from simulating it again."""
+"""The recording behind a result of ``irsim.run``: the one that was made, or one of a second simulation."""
 
 from __future__ import annotations
 

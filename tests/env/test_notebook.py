@@ -1,4 +1,4 @@
-"""What environments, batches and policies show in a notebook, and the replay of an environment's episode."""
+"""Environments, batches and policies in a notebook, and the replay of an environment's episode."""
 
 from __future__ import annotations
 

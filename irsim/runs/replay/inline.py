@@ -45,7 +45,7 @@ def replay_of_env(env: Any, height: int = HEIGHT_PX) -> Page:
     simulation = env.simulation
     poses = all_poses(simulation)
     if poses is None:
-        what = "the past of this episode is not known: the script added or deleted objects, or there are none"
+        what = "the past of this episode is not known: the script added or deleted objects, or the world is empty"
         raise InputError(what, "call env.reset() first, or put the objects into the scenario")
     goals = [past_goals(simulation, row) for row in range(simulation.objects)]
     twin = copy.deepcopy(env)
