@@ -16,6 +16,7 @@ from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.connect import connect, open_bridges
 from irsim.bridges.options import bridge_text, check_files, read_bridges
 from irsim.common.extras import require
+from irsim.common.keywords import answers_misspelt
 from irsim.common.text import seconds
 from irsim.diagnostics.errors import InputError, PolicyLostError
 from irsim.env import Env
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
 __all__ = ["run"]
 
 
+@answers_misspelt
 def run(
     path: str | Path | None = None,
     *,

@@ -16,6 +16,7 @@ from irsim.bridges.controls import native_control
 from irsim.bridges.state import Feedback, Motion, world_state
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
+from irsim.common.keywords import answers_misspelt
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import CodedError
@@ -59,6 +60,7 @@ def open_bridges(options: Iterable[Any]) -> list[Bridge]:
     return made
 
 
+@answers_misspelt
 def connect(env: Any, bridges: Sequence[Bridge] | None = None) -> Connection:
     """Connect an environment with other programs; use the result in a ``with`` statement.
 

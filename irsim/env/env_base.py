@@ -7,6 +7,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.common.keywords import answers_misspelt
 from irsim.common.lazy import computed
 from irsim.common.log import Logger
 from irsim.env import drawing, lifetime, live, loop, messages, notebook, object_list, policies, queries, snapshots
@@ -43,6 +44,7 @@ class Env(EnvState):
         policy: The policy that drives the robots instead of their behaviors; see :meth:`set_policy`.
     """
 
+    @answers_misspelt
     def __init__(
         self,
         world_name: str | Path | ResolvedScenario | None = None,

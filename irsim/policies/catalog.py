@@ -12,6 +12,7 @@ from typing import Any
 
 from irsim.common.arguments import as_given, is_number
 from irsim.common.hashing import digest
+from irsim.common.keywords import answers_misspelt
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest, suggestion
 from irsim.diagnostics.errors import CodedError, InputError, PolicyError
@@ -70,6 +71,7 @@ def policy_names() -> list[str]:
     return sorted({*behavior_names(), RANDOM, MIXED, *POLICIES.names(), *trained_policies()})
 
 
+@answers_misspelt
 def open_policy(source: PolicySource, *, folder: str | Path | None = None, root: str | Path | None = None) -> Policy:
     """Open a policy.
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from irsim.common.angles import wrap
 from irsim.common.arguments import as_given
+from irsim.common.keywords import answers_misspelt
 from irsim.common.text import clean
 from irsim.results.episode import EventRecord
 from irsim.results.records import Parting, RunsDiff, SetupChange
@@ -81,6 +82,7 @@ class _Pair:
         return away
 
 
+@answers_misspelt
 def diff_runs(
     before: str | Path | Run, after: str | Path | Run, *, tolerance: float = 0.0, workspace: str | Path | None = None
 ) -> RunsDiff:

@@ -115,6 +115,7 @@ class Recorder:
         self._piece_rows = max(1, _MAX_PIECE_NUMBERS // max(1, 3 * simulation.objects))
         self._revision = simulation.revision
         kept, self._movers = sensors(simulation) if scans else [], recorded_rows(simulation)
+        seed = int(simulation.key()[0])
         self._log = _log_of(simulation, self._movers, scans)
         self._spare: core.Log | None = None  # holds the piece that is being written, or nothing
         self._writer = PieceWriter()
@@ -131,7 +132,7 @@ class Recorder:
             "created": time.strftime("%Y-%m-%dT%H:%M:%S+00:00", time.gmtime()),
             "scenario": scenario,
             "folder": None if source is None else os.path.dirname(os.path.abspath(source)),
-            "seed": int(simulation.key()[0]),
+            "seed": seed,
             "horizon": horizon,
             "step_time": float(simulation.scenario.world.step_time),
             "options": dict(options),

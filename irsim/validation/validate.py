@@ -80,6 +80,7 @@ def validate(
     return report
 
 
+@answers_misspelt
 def fix(
     path: str | Path | None = None, *, text: str | None = None, strict: bool = True, limits: Limits | None = None
 ) -> tuple[str, ValidationReport]:
@@ -112,6 +113,7 @@ def fix(
     return mended.text, report
 
 
+@answers_misspelt
 def diff(
     before: str | Path | None = None,
     after: str | Path | None = None,

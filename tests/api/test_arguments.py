@@ -132,3 +132,24 @@ def test_paths_are_paths(path: Any) -> None:
 def test_imports_are_a_list() -> None:
     with pytest.raises(ArgumentError, match=r"give a list: imports=\['math'\]"):
         irsim.run(text=TEXT, imports="math")
+
+
+@pytest.mark.parametrize(
+    ("function", "wrong", "right"),
+    [
+        ("run", "seeed", "seed"),
+        ("Env", "headles", "headless"),
+        ("make", "save_anim", "save_ani"),
+        ("batch", "thread", "threads"),
+        ("benchmark", "policy", "policies"),
+        ("episodes", "worker", "workers"),
+        ("render", "stepz", "steps"),
+        ("validate", "stric", "strict"),
+        ("export_run", "range", "ranges"),
+        ("connect", "bridge", "bridges"),
+        ("replay", "limit", "limits"),
+    ],
+)
+def test_a_misspelt_argument_is_answered_with_the_nearest_name(function: str, wrong: str, right: str) -> None:
+    with pytest.raises(TypeError, match=rf"^{function}\(\) got .*'{wrong}'\. Did you mean '{right}'\?$"):
+        getattr(irsim, function)("scene.yaml", **{wrong: 1})

@@ -11,6 +11,7 @@ from irsim.bridges.export.episode import open_episode
 from irsim.bridges.export.registry import Format, chosen_options, find_format
 from irsim.common.extras import require
 from irsim.common.files import TargetError, check_new, check_suffix, code_of, new_folder, replacing
+from irsim.common.keywords import answers_misspelt
 from irsim.common.text import clean
 from irsim.episodes.episode import Progress
 from irsim.results.records import ExportResult
@@ -21,6 +22,7 @@ from irsim.scenario.limits import Limits
 __all__ = ["check_target", "export_run"]
 
 
+@answers_misspelt
 def export_run(
     run: str | Path | Run | Sequence[str | Path | Run],
     out: str | Path | None = None,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from irsim.common.files import check_suffix, code_of, write_atomically
+from irsim.common.keywords import answers_misspelt
 from irsim.common.notebook import SUFFIXES
 from irsim.common.text import clean
 from irsim.results.run import ReplayResult
@@ -17,6 +18,7 @@ from irsim.scenario.limits import Limits
 __all__ = ["replay"]
 
 
+@answers_misspelt
 def replay(
     run: str | Path | Run,
     out: str | Path | None = None,
