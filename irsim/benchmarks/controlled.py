@@ -16,7 +16,7 @@ from functools import lru_cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from irsim.benchmarks.episode import Job, scenario_of
 from irsim.diagnostics.errors import InputError, PlacementError, PolicyError
@@ -138,7 +138,7 @@ def _run(job: ControllerJob, env: Env, controller: Controller) -> dict[str, Any]
     """The result of one episode."""
     simulation = env.simulation
     horizon, source = horizon_of(simulation, job.steps, Limits(**dict(job.limits)))
-    driver = FunctionPolicy(controller, name=job.called)
+    driver = FunctionPolicy(cast("Any", controller), name=job.called)  # for its name
     plan = RunPlan(job.name, horizon, source, strict=job.strict, imports=job.imports, policy=driver)
     folder = Path(job.folder, f"seed-{env.seed}")
     shutil.rmtree(folder, ignore_errors=True)  # of a process that died in this episode

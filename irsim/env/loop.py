@@ -159,6 +159,9 @@ def _wait(env: EnvState, steps: int, until_done: bool, recorder: EpisodeRecorder
 def done(env: EnvState, mode: str = "all") -> bool | None:
     """Return whether the robots have arrived or have been stopped by a collision.
 
+    ``world.time_limit`` does not count, as in IR-SIM 2.12: it stays false for a robot that is stuck, so a loop must
+    count its steps. ``irsim.run`` and ``irsim.episodes`` end at the time limit.
+
     Args:
         mode: ``all`` asks for all robots, ``any`` for at least one; any other word returns None.
     """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from irsim.lookup.guides import GUIDES, Guide
+from irsim.lookup.python_guides import PYTHON
 
 __all__ = ["ALL_GUIDES", "NO", "THINGS"]
 
@@ -317,5 +318,5 @@ THINGS: dict[str, Guide] = {
 }
 """Name -> what to write, an example, and the names that users have for it in English, German, Spanish and Chinese."""
 
-ALL_GUIDES = GUIDES | THINGS
+ALL_GUIDES = GUIDES | PYTHON | THINGS
 """The guides, with those about things."""

@@ -19,6 +19,7 @@ else:
     import tomli as tomllib
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+FOLDER = ROOT / "skills"
 FOLDERS = sorted(path.parent for path in (ROOT / "skills").glob("*/SKILL.md"))
 EXAMPLES = [folder for skill in FOLDERS for folder in sorted(skill.glob("examples/*"))]
 SCRIPTS = [path for skill in FOLDERS for path in sorted(skill.rglob("*.py")) if path.parent.name == "scripts"]
@@ -65,6 +66,32 @@ def test_short_enough_to_be_loaded_whole(skill: Path) -> None:
     text = (skill / "SKILL.md").read_text(encoding="utf-8")
     assert len(text.splitlines()) < 300
     assert len(text) / 4 < 5000  # about four characters to a token
+
+
+USUAL = {
+    "a scenario that is written and run": (
+        "irsim-scenario",
+        ("guides/commands.md", "guides/loop.md", "guides/decide.md"),
+    ),
+    "a program around a scenario": ("irsim-runner", ("guides/output.md",)),
+}
+"""A usual task -> its skill, and the pages that it sends to on the way."""
+MOST_READ = 25_000
+
+
+def test_what_one_reads_for_a_usual_task_is_short() -> None:
+    """Also for a request that needs both: a scenario, and a program that runs it."""
+    read = {
+        what: {FOLDER / name / "SKILL.md", *(FOLDER / name / page for page in pages)}
+        for what, (name, pages) in USUAL.items()
+    }
+    for name, pages in USUAL.values():
+        body = (FOLDER / name / "SKILL.md").read_text(encoding="utf-8")
+        assert all(f"({page})" in body for page in pages)
+    read["both"] = {FOLDER / name / "SKILL.md" for name in ("irsim-scenario", "irsim-runner")}
+    read["both"] |= {FOLDER / "irsim-scenario" / page for page in ("guides/commands.md", "guides/loop.md")}
+    sizes = {what: sum(len(page.read_bytes()) for page in pages) for what, pages in read.items()}
+    assert {what: size for what, size in sizes.items() if size > MOST_READ} == {}
 
 
 @each

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 import shlex
@@ -75,6 +76,16 @@ def test_the_loop_runs_and_repeats_itself(folder: Path) -> None:
     rows = [line for line in first if re.match(r"\d ", line)]
     assert len(rows) == 5
     assert rows == [line for line in second if re.match(r"\d ", line)]
+
+
+def test_the_episodes_of_the_guide_run_on_all_cores(folder: Path) -> None:
+    text = (SKILL / "guides" / "output.md").read_text(encoding="utf-8")
+    controller, program = fences(text, "python")[:2]
+    (folder / "controller.py").write_text(controller, encoding="utf-8")
+    (folder / "program.py").write_text(program, encoding="utf-8")
+    first, second = execute(["python", "program.py"], folder).splitlines()[-2:]
+    assert "of 6 episodes succeeded" in first
+    assert [row[0] for row in ast.literal_eval(second)] == list(range(6))
 
 
 def test_the_script_works_as_written(folder: Path) -> None:
