@@ -11,6 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 OWN, PEER = "what irsim wrote itself", "lines of a process of irsim"
 KNOWN = {
     "irsim/benchmarks/cluster.py": PEER,
+    "irsim/benchmarks/controlled.py": PEER,
     "irsim/benchmarks/pool.py": PEER,
     "irsim/bridges/export/formats/npz.py": OWN,
     "irsim/bridges/maps/apart.py": PEER,
