@@ -110,7 +110,7 @@ def seeds_summary(
 
     Args:
         episodes: The episodes.
-        failed: Seeds of those that did not succeed, by outcome.
+        failed: Seeds of episodes that did not succeed, by outcome.
         crowded: Seeds that leave no room for an object.
         left: Seeds for which there was no time.
         same: Whether one episode stands for all seeds.

@@ -33,7 +33,9 @@ def policies(
     ] = None,
     scene: Annotated[
         str | None,
-        typer.Option("--for", metavar="FILE", help="Rank policies by how well they suit this scenario, with reasons."),
+        typer.Option(
+            "--for", metavar="FILE", help="Rank policies by how well they suit the scenario FILE, with reasons."
+        ),
     ] = None,
     imports: Imports = None,
     json_output: Json = False,

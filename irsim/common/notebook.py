@@ -1,6 +1,6 @@
 """Notebooks: whether the program runs in one, pictures that replace each other in a cell, and HTML of facts.
 
-Everything here works without IPython, which is no dependency: the kernel of a notebook has imported it already.
+Everything here works without IPython, which irsim does not need: the kernel of a notebook has imported it already.
 """
 
 from __future__ import annotations

@@ -38,11 +38,11 @@ class Misfit:
     """One way in which a scene lies outside the card of a policy.
 
     Attributes:
-        about: What it is about, in a word or two.
+        about: Its subject, in a word or two.
         weight: 1 for a number out of range, 2 for something that the card does not have, 3 for what cannot drive.
-        reason: What the card says, and what the scene has.
+        reason: The words of the card, and the fact of the scene.
         given: The fact of the scene.
-        allowed: What the card allows.
+        allowed: The bound, or the words, of the card.
     """
 
     about: str
@@ -91,7 +91,7 @@ class Scene:
 
     @cached_property
     def unyielding(self) -> list[ObjectRecord]:
-        """Those of them that do not give way to robots."""
+        """People who do not give way to robots."""
         return [
             one for one in self.people
             if one.target_roles == "obstacle" or not getattr(one.active_behavior, "avoids", False)
@@ -156,8 +156,8 @@ class Scene:
 
 def misfits_of(card: SceneCard, scene: Scene) -> list[Misfit]:
     """All ways in which a scene lies outside the card of a policy, the worst first."""
-    found = [*_of_robots(card, scene), *_of_surroundings(card, scene), *_of_numbers(card, scene)]
-    return sorted(found, key=lambda one: -one.weight)
+    misfits = [*_of_robots(card, scene), *_of_surroundings(card, scene), *_of_numbers(card, scene)]
+    return sorted(misfits, key=lambda one: -one.weight)
 
 
 def _of_robots(card: SceneCard, scene: Scene) -> Iterator[Misfit]:
@@ -196,8 +196,8 @@ def _of_surroundings(card: SceneCard, scene: Scene) -> Iterator[Misfit]:
         )
     elif not card.unyielding and scene.unyielding:
         count = len(scene.unyielding)
-        what = f"{made} for others who give way; {count} in this scene do not"
-        yield Misfit("unyielding", _OTHER_KIND, what, count, "others who give way")
+        what = f"{made} for people who give way; {count} in this scene do not"
+        yield Misfit("unyielding", _OTHER_KIND, what, count, "people who give way")
     arrival = scene.scenario.world.after_arrival
     if card.arrival is not None and arrival not in (None, card.arrival) and len(scene.robots) > 1:
         what = f"{made} with after_arrival: {card.arrival}; this scene has {arrival}"
@@ -226,7 +226,7 @@ def _of_numbers(card: SceneCard, scene: Scene) -> Iterator[Misfit]:
 
 
 def suited_policies(scenario: ResolvedScenario) -> list[Suited]:
-    """All policies with a card, those that suit a scenario best first."""
+    """All policies with a card, the best one for a scenario first."""
     scene = Scene(scenario)
     ranked: list[tuple[int, int, bool, int, Suited]] = []
     for name, card in SCENE_CARDS.items():
@@ -302,7 +302,7 @@ def unsuited(policy: str, scenario: ResolvedScenario, path: Path = ("robot",)) -
 
 def law_findings(scenario: ResolvedScenario) -> list[Diagnostic]:
     """A warning for each entry of robots whose law needs other options among people who do not give way."""
-    scene, found = Scene(scenario), dict[Path, Diagnostic]()
+    scene, findings = Scene(scenario), dict[Path, Diagnostic]()
     for one in scene.robots if scene.unyielding else ():
         law = one.active_behavior
         card = SCENE_CARDS.get(str(getattr(law, "name", "")))
@@ -312,13 +312,13 @@ def law_findings(scenario: ResolvedScenario) -> list[Diagnostic]:
         count = len(scene.unyielding)
         path = (*one.path, "behavior" if one.group_behavior is None else "group_behavior")
         message = (
-            f"{law.name!r} is made for others who give way; {count} in this scene {'does' if count == 1 else 'do'} not"
+            f"{law.name!r} is made for people who give way; {count} in this scene {'does' if count == 1 else 'do'} not"
         )
-        found.setdefault(one.path, Diagnostic(
-            UNSUITED, "warning", path, message, given=count, allowed="others who give way",
+        findings.setdefault(one.path, Diagnostic(
+            UNSUITED, "warning", path, message, given=count, allowed="people who give way",
             fix=f"{setting} keeps more distance; irsim policies --for FILE compares all",
         ))  # fmt: skip
-    return list(found.values())
+    return list(findings.values())
 
 
 def _defaults(law: Any, keys: Iterable[str]) -> set[Any]:

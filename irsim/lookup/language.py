@@ -12,7 +12,7 @@ __all__ = ["language_schema"]
 
 
 def language_schema() -> Node:
-    """The schema with all features that are registered now; it is shared, so nobody may change it."""
+    """The schema with all features that are registered now; it is shared and must not be changed."""
     features = ((kind, one.name, one.options, one.simulated) for kind, r in REGISTRIES.items() for one in r.features())
     return _schema_of((*features, *CUSTOM_BEHAVIORS.names(), "groups", *CUSTOM_GROUP_BEHAVIORS.names()))
 

@@ -138,15 +138,15 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     if component is not None:
         return lookup(component, schema=schema)
     try:
-        found = search_answer(schema, topic.strip(), words or topic.split(), lambda hit: lookup(hit, schema=schema))
+        hits = search_answer(schema, topic.strip(), words or topic.split(), lambda hit: lookup(hit, schema=schema))
     except TopicError as error:
         nearest = nearest_name(schema, topic.strip()) if len(topic.split()) == 1 else None
         nearest = nearest or nearest_topic(error.near, words)
         if nearest is None:
             raise
         return _neighbour(schema, nearest)
-    mended = mended_text(schema, topic, found.unknown)
-    return found if mended is None else _neighbour(schema, mended)
+    mended = mended_text(schema, topic, hits.unknown)
+    return hits if mended is None else _neighbour(schema, mended)
 
 
 def _neighbour(schema: Node, name: str) -> Answer:

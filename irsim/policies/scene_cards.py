@@ -39,14 +39,14 @@ class SceneCard(BaseModel):
     way: Annotated[float, Field(gt=0)] = 1e6
     """Longest straight way from a start to a goal [m]."""
     static: Literal["none", "nearby", "planned"] = "nearby"
-    """What it does about static obstacles, walls and maps: it knows none, it avoids those nearby, or it plans around
+    """Its way with static obstacles, walls and maps: it does not know them, it avoids the near ones, or it plans around
     all."""
     movers: bool = True
     """Whether it avoids what moves."""
     unyielding: bool = True
     """Whether it manages among people who do not give way."""
     arrival: Literal["freeze", "yield"] | None = None
-    """What robots do in its scenes that have arrived; None: anything."""
+    """``after_arrival`` in its scenes; None: any."""
     favored: Literal["walls", "robots"] | None = None
     """Scenes in which it comes first among policies that fit equally well, by the published suites: those with walls or
     a map, or those with several robots and no people."""
@@ -55,9 +55,9 @@ class SceneCard(BaseModel):
     remedy: OptionValues = {}
     """Options with which it manages among people who do not give way."""
     lidar: dict[str, float | str] | None = None
-    """The lidar that its robots need, with the options of the training; None: it needs none."""
+    """The lidar that its robots need, with the options of the training; None: it works without."""
     cost: str = ""
-    """What to know before choosing it."""
+    """A price that one should know before choosing it."""
 
 
 _SFM_AMONG_PEOPLE: OptionValues = {"force_factor_social": 12, "safety_radius": 0.5}

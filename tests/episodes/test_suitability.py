@@ -54,28 +54,28 @@ def test_every_policy_has_a_card() -> None:
 
 
 def test_a_policy_trained_without_obstacles_does_not_suit_a_hall_with_pillars() -> None:
-    found = ranked(scene(PILLARS))
-    assert next(iter(found)) == "orca"
-    assert found["orca"].fits == "yes"
-    assert found["multi_robot"].fits == "no"
-    assert "was trained without static obstacles; this scene has 14 static obstacles" in found["multi_robot"].reason
-    assert found["goal_lidar"].fits == "yes"  # it has learned with obstacles and a lidar
-    assert found["dash"].fits == "no"
+    policies = ranked(scene(PILLARS))
+    assert next(iter(policies)) == "orca"
+    assert policies["orca"].fits == "yes"
+    assert policies["multi_robot"].fits == "no"
+    assert "was trained without static obstacles; this scene has 14 static obstacles" in policies["multi_robot"].reason
+    assert policies["goal_lidar"].fits == "yes"  # it has learned with obstacles and a lidar
+    assert policies["dash"].fits == "no"
 
 
 def test_walls_on_the_way_ask_for_a_plan() -> None:
-    found = ranked(scene(WALL))
-    best = next(iter(found.values()))
+    policies = ranked(scene(WALL))
+    best = next(iter(policies.values()))
     assert best.line == "behavior: {name: follow, local: orca}"
-    assert "1 wall between a start and its goal" in found["orca"].reason
+    assert "1 wall between a start and its goal" in policies["orca"].reason
 
 
 def test_a_drive_or_a_lidar_that_is_missing_comes_last() -> None:
-    found = ranked(scene().replace("name: diff", "name: omni").replace("vel_max: [1, 2]", "vel_max: [1, 1]"))
-    assert found["goal_lidar"].fits == "cannot"
-    assert "drives diff; this scene has omni" in found["goal_lidar"].reason
-    assert [one.fits for one in found.values()] == sorted(
-        (one.fits for one in found.values()), key=["yes", "partly", "no", "cannot"].index
+    policies = ranked(scene().replace("name: diff", "name: omni").replace("vel_max: [1, 2]", "vel_max: [1, 1]"))
+    assert policies["goal_lidar"].fits == "cannot"
+    assert "drives diff; this scene has omni" in policies["goal_lidar"].reason
+    assert [one.fits for one in policies.values()] == sorted(
+        (one.fits for one in policies.values()), key=["yes", "partly", "no", "cannot"].index
     )
     assert "needs a lidar" in ranked(scene().partition("    sensors")[0])["goal_lidar"].reason
 

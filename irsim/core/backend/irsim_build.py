@@ -52,7 +52,7 @@ ZIGLANG = "ziglang>=0.13,<0.18"
 """The compiler package; zig has no stable release yet, so only tested minor versions are allowed."""
 
 RUNTIME = "nanobind-backend>=1.0"
-"""What the module of a release leaves to another package."""
+"""The package that the module of a release needs beside it."""
 
 ZIG_TOOLS = {
     # -mcpu=baseline: zig's own default is the CPU of this machine, which would make results depend on it.

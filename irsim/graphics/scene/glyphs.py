@@ -45,11 +45,11 @@ class People:
 
     Attributes:
         along, across: Half axes of the ellipse of the shoulders.
-        behind: How far its middle is behind that of the body.
+        behind: How far its middle is behind the middle of the body.
         head: Radius of the head.
         ahead: How far it is ahead of the middle of the body.
         rims: Width of the rim of the shoulders and of the head [u].
-        own: Share of the fill in the colour of the shoulders; the rest is that of the head.
+        own: Share of the fill in the colour of the shoulders; the rest has the colour of the head.
     """
 
     along: float

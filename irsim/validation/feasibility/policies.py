@@ -19,5 +19,5 @@ def check(context: Context, policy: str | None = None) -> Iterator[Finding]:
         policy: Name of the policy; None: the robots have their own behaviors.
     """
     path, _, _ = next(context.entries(), (("robot",), None, None))
-    found = law_findings(context.resolved) if policy is None else unsuited(policy, context.resolved, path)
-    yield from (Finding(item) for item in found)
+    findings = law_findings(context.resolved) if policy is None else unsuited(policy, context.resolved, path)
+    yield from (Finding(item) for item in findings)
