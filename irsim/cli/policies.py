@@ -34,7 +34,7 @@ def policies(
     scene: Annotated[
         str | None,
         typer.Option(
-            "--for", metavar="FILE", help="Rank policies by how well they suit the scenario FILE, with reasons."
+            "--for", metavar="FILE", help="Rank policies by how well they suit FILE, a scenario."
         ),
     ] = None,
     imports: Imports = None,
