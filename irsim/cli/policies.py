@@ -33,9 +33,7 @@ def policies(
     ] = None,
     scene: Annotated[
         str | None,
-        typer.Option(
-            "--for", metavar="FILE", help="Rank policies by how well they suit FILE, a scenario."
-        ),
+        typer.Option("--for", metavar="FILE", help="Rank policies by how well they suit FILE, a scenario."),
     ] = None,
     imports: Imports = None,
     json_output: Json = False,
