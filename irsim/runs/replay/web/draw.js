@@ -10,7 +10,6 @@ import { scanAt } from "./scan.js";
 
 const DENSE = 2.5; // pixels between points of a trail
 const RECENT = 3; // seconds of a trail that stand out
-const NAMED = 12; // things that move, up to which all have names; else robots and what is picked
 const STEPS = [1, 2, 5];
 const AHEAD = 500; // points of the way that is still to come
 
@@ -275,7 +274,7 @@ function drawNames(context, run, at, picked, camera, colors, ratio) {
   }
   for (const object of run.objects) {
     if (!isMover(object) || isAbsent(run, object, at)) continue;
-    if (object.role !== "robot" && object.index !== picked && run.movers.length > NAMED) continue;
+    if (object.role !== "robot" && object.index !== picked) continue;
     const pose = poseAt(run, object.index, at), [x, y] = toPixels(camera, pose.x, pose.y);
     if (x < 0 || y < 0 || x > camera.width || y > camera.height) continue;
     write(context, object.name, x, y - nameLift(run, object, camera), shade(colors, object, "name"), colors);

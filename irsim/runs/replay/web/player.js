@@ -13,6 +13,7 @@ import { eventWords, seconds } from "./words.js";
 
 const POINTS = { playing: 2500, resting: 10000 }; // of trails, painted in one frame
 const LONG = 60; // seconds: longer runs begin at a higher speed
+const NAMED = 12; // robots, up to which their names are shown until somebody hides them
 const DARK = matchMedia("(prefers-color-scheme: dark)");
 
 export const player = {
@@ -155,7 +156,8 @@ export async function show(bytes) {
   player.playing = false;
   player.drawing = makeDrawing();
   player.camera = makeCamera(run.head.world);
-  Object.assign(shown, { at: 0, follow: false, robot: run.robots.find((index) => run.lidars.has(index)) ?? run.robots[0] ?? -1 });
+  const first = run.robots.find((index) => run.lidars.has(index)) ?? run.robots[0] ?? -1;
+  Object.assign(shown, { at: 0, follow: false, robot: first, names: run.robots.length <= NAMED });
   fillPanel(player, actions.goToEvent);
   const length = run.time[run.rows - 1];
   actions.setSpeed(run.head.speed ?? SPEEDS.find((speed) => speed >= 1 && length / speed <= LONG) ?? SPEEDS.at(-1));

@@ -82,6 +82,7 @@ def test_it_tells_what_the_run_was(shown: Any, run: Run) -> None:
     assert shown.locator("#robot option").all_inner_texts() == ["none", "rover", "lorry", "slider"]
     assert int(shown.get_attribute("#time", "max")) == run.last_step
     assert len(shown.locator("#events button").all()) == len(run.events)
+    assert shown.get_attribute("#names", "aria-pressed") == "true", "a few robots are called by their names"
 
 
 def test_it_plays_to_the_end_and_again(shown: Any, run: Run) -> None:
