@@ -61,7 +61,7 @@ def test_an_unknown_sensor_says_how_one_of_ones_own_is_found() -> None:
     ("asked", "title"),
     [
         ("lidr", "sensor lidar2d"),
-        ("lidr range", "sensor lidar2d"),
+        ("lidr range", "scan keys: keys of env.get_lidar_scan()"),
         ("orka", "behavior orca"),
         ("behavior rov", "behavior rvo"),
         ("sensor lidr2d", "sensor lidar2d"),

@@ -89,7 +89,7 @@ class Command:
 
 
 @pytest.fixture
-def watch(ordinary_processes: None) -> Iterator[Watching]:
+def watch(ordinary_processes: None, interruptible: None) -> Iterator[Watching]:
     commands = list[Command]()
 
     def start(text: str, *words: str, **environment: str) -> Command:
