@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from dataclasses import asdict
 from typing import Annotated, Any
 
@@ -107,7 +108,8 @@ def _rank(file: str, json_output: bool) -> None:
         table.add_row(Text(one.policy, style), one.fits, clean(one.reason, 300))
     out.print(table)
     out.print(Text.assemble("\nbest: ", (clean(ranked[0].line, 300), "bold cyan")))
-    out.print("compare them here: irsim benchmark FILE --policies A,B")
+    names = ",".join(one.policy for one in ranked[:3])
+    out.print(f"compare them: irsim benchmark {shlex.quote(clean(file, 300))} --policies {names}", soft_wrap=True)
 
 
 def _default(value: str) -> str:

@@ -48,7 +48,17 @@ def said_by_core(error: MemoryError) -> str:
 
 
 class IrsimError(PickledWhole, Exception):
-    """Base of all errors that irsim raises on purpose."""
+    """Base of all errors that irsim raises on purpose.
+
+    ``except irsim.IrsimError as error: print(error.code)`` works for all of them.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.diagnostics.codes`; of several problems, the code of the first.
+        diagnostics: All problems of a file as data, errors first; empty where the text tells the only one.
+    """
+
+    code: str
+    diagnostics: Sequence[Diagnostic] = ()
 
 
 class ScenarioError(IrsimError, ValueError):
@@ -58,10 +68,14 @@ class ScenarioError(IrsimError, ValueError):
         diagnostics: All findings, errors first; warnings are included.
     """
 
+    diagnostics: list[Diagnostic]
+
     def __init__(self, diagnostics: Sequence[Diagnostic], source: str | None = None) -> None:
         from irsim.diagnostics.report import format_diagnostics
 
         self.diagnostics = list(diagnostics)
+        if self.diagnostics:
+            self.code = self.diagnostics[0].code
         self.source = source
         super().__init__("\n" + format_diagnostics(self.diagnostics, source))
 
@@ -158,3 +172,5 @@ class PlacementError(ScenarioError):
 
 class ScenarioNotFoundError(IrsimError, FileNotFoundError):
     """No scenario file has that name; the message names the places searched and near matches."""
+
+    code = "file-not-found"

@@ -49,6 +49,8 @@ def test_names_of_files_lead_to_the_right_neighbour(workspace: object) -> None:
         file.write("task: mine\n")
     with pytest.raises(TaskError, match=r"did you mean task\.yaml\?"):
         open_task("tsk.yaml")
+    with open("old.yaml", "w", encoding="utf-8") as file:
+        file.write("task: mine\n")
     with pytest.raises(TaskError, match=r"did you mean goal_lidar\?"):
         open_task("goal_lidr")
 

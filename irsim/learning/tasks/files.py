@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
+from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest, suggestion
 from irsim.diagnostics.diagnostic import Path as Path_
 from irsim.diagnostics.errors import CodedError
 from irsim.diagnostics.report import format_diagnostics
@@ -65,7 +65,8 @@ def open_task(source: TaskSource) -> tuple[Task, Path]:
     if not path.is_file() and str(source) in known:
         path = TASKS.bundled(str(source))
     if not path.is_file():
-        files = near_files(str(source), [str(path.parent)])
+        bundled = not path.suffix and nearest(str(source), known) is not None
+        files = [] if bundled else near_files(str(source), [str(path.parent)])
         fix = f"did you mean {clean(files[0])}?" if files else None
         fix = fix or suggestion(str(source), known, f"give a task file, or one of {', '.join(known)}")
         raise TaskError(f"there is no task file {clean(str(source), 200)!r}", fix)
