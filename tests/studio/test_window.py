@@ -156,7 +156,7 @@ def test_the_page_opens_in_the_browser_of_the_user(watch: Watching, tmp_path: Pa
         (["--no-browser"], "--no-browser is about the page of --watch"),
         (["--speed", "2"], "--speed is about what is shown"),
         (["--watch", "--seeds", "3"], "--watch is about one run, and --seeds about several"),
-        (["--watch", "--port", "70000"], "less than or equal to 65535"),
+        (["--watch", "--port", "70000"], "65535"),
     ],
 )
 def test_options_that_do_not_fit_are_refused(words: list[str], said: str) -> None:

@@ -27,13 +27,13 @@ _ABOUT = (
 _SHOWN = """\
 - `orca` and `avocado`, alone in any of the seven crowds, arrive in all 210 episodes. `footprint_orca`, which touches
   nothing among its own, is in a contact in 3 of 210: among `orca`, `sarl_multi_robot` and `ppo`.
-- The networks were trained without limits of acceleration and among robots of their own. `ppo` does worst among its own
-  (77 % as one robot) and among people. The same five robots of a crowd of `ppo` succeed in 79 % beside five of `ppo`,
-  and in 87 to 89 % beside five of any other policy.
+- The networks were trained without limits of acceleration and among robots of their own. As one robot `ppo` does worst
+  among its own (77 %); as half of the robots it does worst among people (83 %). The same five robots of a crowd of
+  `ppo` succeed in 79 % beside five of `ppo`, and in 87 to 89 % beside five of any other policy.
 - Five robots with a planner (`orca`, `avocado`, `footprint_orca`) all succeed among five with another planner, and
   in 97 to 100 % among networks and people.
-- 30 episodes tell little about one robot: 30 of 30 is 89 to 100 %, so columns differ for sure only where intervals are
-  apart. `irsim benchmark mixed_v2 --full` runs 300."""
+- 30 episodes tell little about one robot: 30 of 30 is 89 to 100 %, and columns have the same seeds, so compare pairs
+  of episodes (`scripts/verdict.py`) before you say that they differ. `irsim benchmark mixed_v2 --full` runs 300."""
 _OF_PROBE = (
     "Of the policy in the row: success with its interval / collision / timeout in %, and the mean time of robots that "
     "arrived."
