@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from tests.site.fences import commands_of, fences_of
+from tests.site.fences import commands_of, execute, fences_of
 from tests.warm import warm
 
 pytestmark = pytest.mark.one_python
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted((ROOT / ".ci/site/hand").glob("*.md"))
-
-
-def execute(command: list[str], folder: Path) -> None:
-    env = {**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=240, env=env)
-    assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

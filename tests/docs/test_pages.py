@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shlex
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
 from irsim.cli.overview import SENTENCES_FILE, sentences_text
+from tests.site.fences import execute
 from tests.warm import warm
 
 pytestmark = pytest.mark.one_python
@@ -43,13 +42,6 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def execute(command: list[str], folder: Path) -> str:
-    env = {**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=120, env=env)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
-
-
 def test_a_fresh_clone_needs_one_command_and_its_tests_another() -> None:
     commands = [(name, language, content) for kind, name, language, content in BLOCKS if kind == "command"]
     assert [name for name, _, _ in commands] == ["demo", "test"]
@@ -70,7 +62,7 @@ def test_python_programs_run(folder: Path) -> None:
     programs = [content for _, _, language, content in BLOCKS if language == "python"]
     assert programs
     for program in programs:
-        execute([sys.executable, "-c", program], folder)
+        execute([sys.executable, "-c", program], folder, timeout=120)
 
 
 def test_irsim_commands_run(folder: Path) -> None:
@@ -83,7 +75,7 @@ def test_irsim_commands_run(folder: Path) -> None:
     ]
     assert commands
     for command in commands:
-        execute(warm([sys.executable, "-m", *shlex.split(command)]), folder)
+        execute(warm([sys.executable, "-m", *shlex.split(command)]), folder, timeout=120)
 
 
 def test_the_sentences_of_commands_are_those_of_their_help() -> None:

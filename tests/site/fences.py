@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
+import subprocess
 from collections.abc import Iterator
+from pathlib import Path
 from typing import NamedTuple
 
-__all__ = ["Fence", "commands_of", "fences_of"]
+__all__ = ["Fence", "commands_of", "execute", "fences_of"]
 
+ROOT = Path(__file__).resolve().parents[2]
 _FENCE = re.compile(
     r"(?:<!-- (?P<kind>file|not run|command): (?P<about>[^>]*?) -->\n)?"
     r"^(?P<indent> *)```(?P<language>[\w{}-]*)\n(?P<text>.*?)^(?P=indent)```",
@@ -50,3 +54,11 @@ def commands_of(text: str) -> Iterator[list[str]]:
                 command = []
             else:
                 command.append(word)
+
+
+def execute(command: list[str], folder: Path, timeout: float = 240) -> str:
+    """Run a command or a program of a page in a folder; returns what it prints, and fails if it fails."""
+    env = {**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=timeout, env=env)
+    assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
+    return done.stdout

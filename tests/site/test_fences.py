@@ -7,9 +7,7 @@ examples of ``irsim describe`` in tests/lookup; of these pages, each block is re
 from __future__ import annotations
 
 import json
-import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -19,7 +17,7 @@ import yaml
 
 import irsim
 from irsim.bundled import templates
-from tests.site.fences import Fence, commands_of, fences_of
+from tests.site.fences import Fence, commands_of, execute, fences_of
 from tests.warm import warm
 
 pytestmark = [pytest.mark.site, pytest.mark.one_python]
@@ -29,12 +27,6 @@ PLACEHOLDERS = re.compile(r"…|\.\.\.|\b[A-Z]{3,}\b|<\w+>")
 
 def read(site: Path, page: str) -> list[Fence]:
     return list(fences_of((site / "source" / f"{page}.md").read_text(encoding="utf-8")))
-
-
-def execute(command: list[str], folder: Path) -> None:
-    env = {**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(Path(irsim.__file__).parents[1])}
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=240, env=env)
-    assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
 
 
 def test_the_gallery_runs_as_it_says(site: Path, tmp_path: Path) -> None:
