@@ -15,6 +15,7 @@ from irsim.common.text import clean
 from irsim.runs.reading import Run
 from irsim.runs.replay.drawing import Columns, folded
 from irsim.runs.replay.rows import (
+    MAX_EVENTS,
     add_flags,
     add_goals,
     add_poses,
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Packed", "pack_run", "pack_trace"]
 
-_MAX_EVENTS = 4000
-"""Number of events that the page shows."""
 _RANKS = {
     "collision": 0,
     "passed_through": 0,
@@ -234,6 +233,6 @@ def _most_important(events: list[Event], robots: Container[str]) -> list[Event]:
     chosen = list[int]()
     for rank in sorted(ranks):
         places = ranks[rank]
-        count = min(len(places), _MAX_EVENTS - len(chosen))
+        count = min(len(places), MAX_EVENTS - len(chosen))
         chosen += [places[k] for k in np.linspace(0, len(places) - 1, count).round().astype(int)]
     return [events[place] for place in sorted(chosen)]

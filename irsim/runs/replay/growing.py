@@ -9,6 +9,7 @@ import numpy as np
 from irsim.common.text import clean
 from irsim.runs.replay.drawing import Columns
 from irsim.runs.replay.rows import (
+    MAX_EVENTS,
     add_flags,
     add_goals,
     add_poses,
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 
 __all__ = ["GrowingRun"]
 
-_MAX_EVENTS = 4000
-"""Number of events that the page shows; of later ones it shows how many there are."""
 _FASTEST = 1
 """Level of compression of a block, which is written while the simulation waits."""
 
@@ -144,6 +143,6 @@ class GrowingRun:
         events = read_events(self._simulation, start=self._events)
         self._events += len(events)
         shown = [page_event(one, self._number) for one in events if one.object in self._number]
-        shown = shown[: max(0, _MAX_EVENTS - self._sent)]
+        shown = shown[: max(0, MAX_EVENTS - self._sent)]
         self._sent += len(shown)
         return {"events": shown, "event_count": self._events}

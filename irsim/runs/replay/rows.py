@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = [
+    "MAX_EVENTS",
     "add_flags",
     "add_goals",
     "add_poses",
@@ -35,6 +36,8 @@ __all__ = [
 
 FORMAT = 1
 """Version of the packed format."""
+MAX_EVENTS = 4000
+"""Number of events that the page shows; of later ones it shows how many there are."""
 _MAX_POSES = 2_000_000
 """Number of rows times moving objects; of longer runs the page shows every Nth step."""
 _TURN_QUANTUM = 2.0**-11

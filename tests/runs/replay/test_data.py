@@ -104,7 +104,7 @@ def test_of_too_many_events_collisions_stay_and_others_are_thinned_evenly(
     other = hit._replace(object="crate", partner="block")
     events = sorted([*arrivals, *hits, other], key=lambda event: event.step)
     monkeypatch.setattr(Run, "events", events)
-    monkeypatch.setattr(packing, "_MAX_EVENTS", 60)
+    monkeypatch.setattr(packing, "MAX_EVENTS", 60)
     head = packing.pack_run(open_run(run.id)).head
     kinds = [event[1] for event in head["events"]]
     assert (kinds.count("collision"), kinds.count("arrival")) == (31, 29)
@@ -112,7 +112,7 @@ def test_of_too_many_events_collisions_stay_and_others_are_thinned_evenly(
     assert (shown[0], shown[-1]) == (0, run.last_step)
     assert max(np.diff(shown)) <= 2 * run.last_step / 28
     assert (head["event_count"], head["left_out"]) == (231, {"arrival": 171})
-    monkeypatch.setattr(packing, "_MAX_EVENTS", 10)
+    monkeypatch.setattr(packing, "MAX_EVENTS", 10)
     head = packing.pack_run(open_run(run.id)).head
     assert [event[2] for event in head["events"]] == [1] * 10  # the robot's collisions, over their whole time
     assert (head["events"][0][0], head["events"][-1][0]) == (hits[0].step, hits[-1].step)
@@ -159,7 +159,7 @@ def test_contacts_between_steps_have_their_time_within_the_step(workspace: Path)
 def test_contacts_between_steps_are_among_the_most_important_events(
     workspace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(packing, "_MAX_EVENTS", 2)
+    monkeypatch.setattr(packing, "MAX_EVENTS", 2)
     head, _ = unpacked(packing.pack_run(recorded(tunnel())).data)
     assert [event[1] for event in head["events"]] == ["contact_between_steps", "passed_through"]
     assert head["left_out"] == {"arrival": 1}

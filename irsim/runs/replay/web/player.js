@@ -5,6 +5,7 @@ import { themeColors } from "./colors.js";
 import { listen, offerSpeed, showTip, SPEEDS } from "./controls.js";
 import { $ } from "./dom.js";
 import { drawFrame, makeDrawing } from "./draw.js";
+import { crowding } from "./glyphs.js";
 import { fillPanel, growPanel, offerMore, showChoices, showMoment, showRun } from "./panel.js";
 import { unpack } from "./read.js";
 import { extendRun, makeRun, poseAt, rowOfTime, timeOfRow } from "./run.js";
@@ -13,7 +14,6 @@ import { eventWords, seconds } from "./words.js";
 
 const POINTS = { playing: 2500, resting: 10000 }; // of trails, painted in one frame
 const LONG = 60; // seconds: longer runs begin at a higher speed
-const NAMED = 12; // robots, up to which their names are shown until somebody hides them
 const DARK = matchMedia("(prefers-color-scheme: dark)");
 
 export const player = {
@@ -157,7 +157,7 @@ export async function show(bytes) {
   player.drawing = makeDrawing();
   player.camera = makeCamera(run.head.world);
   const first = run.robots.find((index) => run.lidars.has(index)) ?? run.robots[0] ?? -1;
-  Object.assign(shown, { at: 0, follow: false, robot: first, names: run.robots.length <= NAMED });
+  Object.assign(shown, { at: 0, follow: false, robot: first, names: !crowding(run) });
   fillPanel(player, actions.goToEvent);
   const length = run.time[run.rows - 1];
   actions.setSpeed(run.head.speed ?? SPEEDS.find((speed) => speed >= 1 && length / speed <= LONG) ?? SPEEDS.at(-1));

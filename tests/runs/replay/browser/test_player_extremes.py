@@ -72,7 +72,7 @@ def test_more_is_offered_only_where_there_is_more(shown: Any) -> None:
 
 
 def test_it_says_which_events_are_not_listed(run: Run, watched: Watched, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(packing, "_MAX_EVENTS", 1)
+    monkeypatch.setattr(packing, "MAX_EVENTS", 1)
     page = watched.open(Path(irsim.replay(run).file))
     assert page.text_content("#eventshead") == f"Events (1 of {len(run.events)})"
     assert page.inner_text("#events").endswith("hits crate")
