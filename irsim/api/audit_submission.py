@@ -22,6 +22,7 @@ from irsim.episodes.episode import Progress
 from irsim.results.audit import AuditResult, LeaderboardRow, RunAudit, SubmissionAudit
 from irsim.results.benchmark import SuiteResult
 from irsim.runs.audit.audit import audit_runs
+from irsim.runs.store import META, is_run
 from irsim.simulation.engine import engine
 
 __all__ = ["DEFAULT_REPLAYS", "audit_all", "audit_submission"]
@@ -35,9 +36,15 @@ def audit_all(names: Sequence[str | Path], **options: Any) -> AuditResult:
         **options: Further arguments of :func:`audit_submission`.
 
     Raises:
-        InputError: Options of submissions are given without a submission.
+        InputError: A folder holds nothing that can be audited, or options of submissions are given without a
+            submission.
     """
     submissions = [name for name in names if (Path(name) / MANIFEST).exists()]
+    for name in names:
+        if name not in submissions and Path(name).is_dir() and not is_run(name):
+            what = f"{clean(str(name), 200)} holds neither a submission ({MANIFEST}) nor a recorded run ({META})"
+            how = "irsim benchmark SUITE --submission DIR writes the one, irsim run FILE --record-to DIR the other"
+            raise InputError(what, f"name such a folder: {how}")
     if not submissions and any(
         value is not None and value != {} for key, value in options.items() if key != "progress"
     ):

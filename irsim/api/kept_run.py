@@ -15,32 +15,26 @@ from irsim.common.arguments import as_given
 from irsim.common.extras import library
 from irsim.common.notebook import Page
 from irsim.diagnostics.errors import InputError
-from irsim.results.run import RunResult, RunsResult
+from irsim.results.run import RunResult
 from irsim.runs.reading import Run, open_run
 from irsim.runs.replay.inline import replay_of_run
 
-__all__ = ["recorded_run", "run_replay", "run_table", "runs_table"]
+__all__ = ["recorded_run", "run_replay", "runs_table"]
 
 _RECORD = "record the run: irsim.run(…, record=True)"
 
 
-def run_table(result: RunResult, objects: str | Sequence[str], ranges: bool) -> Any:
+def runs_table(episodes: Sequence[RunResult], rows: str, objects: str | Sequence[str], ranges: bool) -> Any:
     """See :meth:`irsim.results.run.RunResult.to_pandas`."""
-    library("pandas")  # before a run is simulated again for nothing
-    return run_frame([recorded_run(result)], objects, ranges=ranges)
-
-
-def runs_table(result: RunsResult, rows: str, objects: str | Sequence[str], ranges: bool) -> Any:
-    """See :meth:`irsim.results.run.RunsResult.to_pandas`."""
     if rows not in ("steps", "robots"):
         raise InputError(f"a table has no rows for {as_given(rows)}", "choose steps or robots", "rows")
-    pandas = library("pandas")
+    pandas = library("pandas")  # before a run is simulated again for nothing
     if rows == "steps":
-        return run_frame([recorded_run(one) for one in result.episodes], objects, ranges=ranges)
+        return run_frame([recorded_run(one) for one in episodes], objects, ranges=ranges)
     return pandas.DataFrame(
         [
             {"seed": one.seed, "steps": one.steps, "sim_time": one.sim_time, **robot.model_dump()}
-            for one in result.episodes
+            for one in episodes
             for robot in one.robots
         ]
     )

@@ -42,10 +42,13 @@ def _policies(_: Any) -> Iterable[str]:
     return [one.name for one in _found("irsim.policies.description", "list_policies")()]
 
 
-def _topics(_: Any) -> Iterable[str]:
+def _topics(context: Any) -> Iterable[str]:
     schema = _found("irsim.scenario.model.json_schema", "json_schema")()
-    lists = ("codes", "events", "guides", "metrics", "policies", "suites", "templates")
-    return [*_found("irsim.lookup.search", "all_topics")(schema), *lists]
+    paths = _found("irsim.lookup.search", "all_topics")(schema)
+    names = (path.rpartition(".")[2] for path in paths)  # a key or a component alone is a topic, too
+    lists = ("codes", "differences", "events", "guides", "metrics", "policies", "suites", "templates")
+    events, tasks = _found("irsim.common.event_kinds", "EVENTS"), (f"task.{name}" for name in _tasks(context))
+    return [*paths, *names, *lists, *events, *tasks, *_suites(context), *_policies(context)]
 
 
 def _templates(_: Any) -> Iterable[str]:

@@ -65,6 +65,9 @@ def _show(answer: Answer, out: Console) -> None:
     def line(*parts: RenderableType) -> None:
         out.print(*parts)
 
+    if answer.best is not None:  # what was probably meant comes before the other topics
+        title, _, rest = as_brief_text(answer.best).partition("\n")
+        out.print(Text(title, style="bold"), Text(rest), "", sep="\n")
     line(Text(title_of(answer), style="bold"))
     if answer.text:
         line(answer.text)
@@ -82,9 +85,6 @@ def _show(answer: Answer, out: Console) -> None:
     if answer.see:
         line()
         line(Text.assemble(("see also: ", "dim"), ", ".join(answer.see)))
-    if answer.best is not None:
-        title, _, rest = as_brief_text(answer.best).partition("\n")
-        out.print("", Text(title, style="bold"), Text(rest), sep="\n")
 
 
 def _table(keys: list[Key]) -> RenderableType:

@@ -23,8 +23,12 @@ MAX_ROWS = 20
 
 
 def diff_runs(
-    before: Annotated[str, typer.Argument(metavar="A", help="Id or folder of a run, or 'last'.", show_default=False)],
-    after: Annotated[str, typer.Argument(metavar="B", help="Id or folder of another run.", show_default=False)],
+    before: Annotated[
+        str, typer.Argument(metavar="[A]", help="Id or folder of a run. Default: the run before the last.")
+    ] = "last-1",
+    after: Annotated[
+        str, typer.Argument(metavar="[B]", help="Id or folder of another run. Default: the last run.")
+    ] = "last",
     tolerance: Annotated[
         float, typer.Option(min=0.0, help="Numbers that differ by at most this much count as equal.")
     ] = 0.0,
@@ -32,7 +36,8 @@ def diff_runs(
 ) -> None:
     """Find the first step in which two recorded runs differ, and in what; the exit code is 1 if they differ.
 
-    Differences of scenario, seed, version and options are listed, too, but do not count.
+    Without arguments it compares the last two runs. Differences of scenario, seed, version and options are listed, too,
+    but do not count.
     """
     difference = comparison.diff_runs(before, after, tolerance=tolerance)
     if json_output:

@@ -11,6 +11,13 @@ from irsim.diagnostics.errors import CodedError
 __all__ = ["ExtraError", "library", "require"]
 
 
+_TORCH = (
+    "without a GPU first run pip install torch --index-url https://download.pytorch.org/whl/cpu (1 GB in all, with "
+    "CUDA 5.6 GB); "
+)
+"""The advice before the command that installs torch, which otherwise brings CUDA."""
+
+
 class ExtraError(CodedError, ImportError):
     """A library that an extra installs is missing."""
 
@@ -29,7 +36,8 @@ def require(extra: str, *modules: str) -> None:
     if missing:
         be = "is" if len(missing) == 1 else "are"
         what = f"{' and '.join(missing)} {be} not installed"
-        raise ExtraError("missing-extra", what, f"install the extra: pip install 'irsim-mcp[{extra}]'")
+        first = _TORCH if "torch" in missing else ""
+        raise ExtraError("missing-extra", what, f"{first}install the extra: pip install 'irsim-mcp[{extra}]'")
 
 
 def library(name: str) -> Any:

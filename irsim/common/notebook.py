@@ -17,7 +17,7 @@ from typing import Any
 from irsim.common.files import check_suffix, write_atomically
 from irsim.common.text import clean
 
-__all__ = ["MAX_ROWS", "SUFFIXES", "Cell", "Page", "draws_inline", "facts", "picture", "section", "table"]
+__all__ = ["MAX_ROWS", "SUFFIXES", "Cell", "Page", "draws_inline", "facts", "picture", "section", "table", "text_table"]
 
 MAX_ROWS = 10
 """Number of rows that a table of a notebook shows."""
@@ -138,6 +138,16 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table>{rest}"
 
 
+def text_table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """The same table as plain text, for a console."""
+    listed = list(rows)
+    cells = [[_plain(value) for value in row] for row in (columns, *listed[:MAX_ROWS])]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in cells]
+    more = len(listed) - MAX_ROWS
+    return "\n".join([*lines, *([f"and {more} more rows"] if more > 0 else [])])
+
+
 def picture(png: bytes, alt: str) -> str:
     """A picture as HTML.
 
@@ -150,8 +160,13 @@ def picture(png: bytes, alt: str) -> str:
 
 def _text(value: object) -> str:
     """A value as text of HTML: names come from files of other people."""
+    return html.escape(_plain(value))
+
+
+def _plain(value: object) -> str:
+    """A value as text without marks that change the text around it; None is empty."""
     if value is None:
         return ""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return html.escape(clean(f"{value:.6g}" if isinstance(value, float) else str(value), 400))
+    return clean(f"{value:.6g}" if isinstance(value, float) else str(value), 400)

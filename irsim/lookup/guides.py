@@ -159,6 +159,24 @@ GUIDES: dict[str, Guide] = {
             *("import-bag", "floor plan", "scan of a building"),
         ),
     ),
+    "unknown-cells": Guide(
+        "what cells of a map count as that are neither free nor occupied",
+        "In a scenario they are free by default (`unknown: free` of the map ros); pictures show them in grey. "
+        "`unknown: unknown` keeps them: beams, sight and bodies pass, while planners and random places keep out. "
+        "`unknown: occupied` makes them walls. Arrays have -1 for an unknown cell. `irsim map import` writes the key "
+        "itself, `occupied` unless --unknown says otherwise; from a map of ROS it keeps them unknown.",
+        "world: {obstacle_map: {name: ros, path: map.yaml, unknown: unknown}}",
+        ("unknown cells", "unknown cell", "unknown space", "unknown area", "grey cells", "unexplored cells"),
+    ),
+    "cite": Guide(
+        "how to cite irsim, a run and a suite",
+        "Cite a benchmark with the line `Cite this run` at the end of its report: it has version, engine, suite, its "
+        "hash and the seeds, which are all that is needed to run it again. Cite the program as CITATION.cff of the "
+        "repository says: irsim developers, irsim, its version (`irsim --version`), MIT license. Of a suite or a "
+        "policy that others published also cite its sources, which `irsim describe NAME` names.",
+        "irsim benchmark crowdnav_circle_v2 --seeds 20 --out results   # results/results.md ends with the line",
+        ("citation", "citing", "how to cite", "bibtex", "cite this run"),
+    ),
     "perturb": Guide(
         "starts that differ a little with each seed",
         "Does it still work when things start slightly differently? An option of `irsim run` and `irsim benchmark` "

@@ -22,6 +22,7 @@ __all__ = [
     "code_answer",
     "codes_answer",
     "difference_answer",
+    "differences_answer",
     "event_answer",
     "events_answer",
     "guide_answer",
@@ -97,6 +98,19 @@ def difference_answer(name: str) -> Answer:
     one = DIFFERENCES[name]
     text = f"IR-SIM 2.12: {one.theirs}. irsim: {one.ours}. Why: {one.why}."
     return Answer(topic=name, kind="guide", title=f"{name}: an intended difference from IR-SIM 2.12", text=text)
+
+
+def differences_answer() -> Answer:
+    """List the intended differences from IR-SIM 2.12."""
+    lines = [Key(name=name, text=one.theirs) for name, one in DIFFERENCES.items()]
+    return Answer(
+        topic="differences",
+        kind="index",
+        title="What differs from IR-SIM 2.12",
+        text="Files and programs for IR-SIM 2.12 run without changes, but for these intended differences; "
+        f"`irsim describe {lines[0].name}` says what irsim does instead, and why.",
+        groups={"what IR-SIM 2.12 does": lines},
+    )
 
 
 def all_codes() -> dict[str, Code]:

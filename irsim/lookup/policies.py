@@ -13,11 +13,21 @@ from irsim.lookup.answer import Answer, Key
 from irsim.policies.converters.convert import CONVERTERS
 from irsim.policies.description import PolicyInfo, describe_policy, list_policies
 from irsim.policies.registry import MIXED, POLICIES
+from irsim.policies.scene_cards import SCENE_CARDS
 from irsim.policies.trained import trained_policies
 from irsim.scenario.behavior_override import behavior_text
 from irsim.scenario.perturbation import Perturbation
+from irsim.scenario.yaml.rewrite import yaml_flow
 
-__all__ = ["convert_answer", "policies_answer", "policy_answer", "suite_answer", "suite_key_answer", "suites_answer"]
+__all__ = [
+    "advice_among_people",
+    "convert_answer",
+    "policies_answer",
+    "policy_answer",
+    "suite_answer",
+    "suite_key_answer",
+    "suites_answer",
+]
 
 
 def policy_answer(topic: str) -> Answer | None:
@@ -35,6 +45,13 @@ def policy_answer(topic: str) -> Answer | None:
         if isinstance(text, str) and text in known:
             return _policy(text, [f"The suite {suite.suite} calls it {name}."])
     return None
+
+
+def advice_among_people(law: str) -> str:
+    """The options that a law needs among people who do not give way, as a sentence; empty if it needs none."""
+    card = SCENE_CARDS.get(law)
+    setting = ", ".join(f"{key}: {yaml_flow(value)}" for key, value in (card.remedy if card else {}).items())
+    return f"A robot among people who do not give way needs `{setting}`." if setting else ""
 
 
 def _policy(name: str, notes: list[str]) -> Answer:

@@ -111,6 +111,8 @@ EVERYDAY: dict[str, str] = {
     "world.step_time": "time step, step time, timestep, dt, period, frequency, sampling time, step size",
     "world.seed": "seed, random seed, reproducible",
     "gui.keyboard": "keyboard, teleop, manual control, joystick",
+    "crowd-stops": "freeze, frozen, frozen crowd, crowd freezes, crowd stops, people stop, people freeze",
+    "world.after_arrival": "freeze",
     "goal-unreachable": "path exist, path must exist, path to the goal exist, path to goal exist, way must exist, "
     "way to the goal exist, no path, no way to the goal, reachable, unreachable, can reach, connected",
     "goal-blocked": "free space, goal in an obstacle, goal in free space",

@@ -17,6 +17,7 @@ from irsim.lookup.index import (
     code_answer,
     codes_answer,
     difference_answer,
+    differences_answer,
     event_answer,
     events_answer,
     guide_answer,
@@ -28,6 +29,7 @@ from irsim.lookup.index import (
 from irsim.lookup.language import language_schema
 from irsim.lookup.metrics import METRIC_TOPICS, all_metrics, metric_answer, metric_topic, task_answer
 from irsim.lookup.policies import (
+    advice_among_people,
     convert_answer,
     policies_answer,
     policy_answer,
@@ -85,9 +87,12 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     if not topic.strip():
         return index_answer()
     lists = {
+        "2.12": differences_answer,
         "codes": codes_answer,
+        "differences": differences_answer,
         "events": events_answer,
         "guides": guides_answer,
+        "ir-sim": differences_answer,
         "metric": all_metrics,
         "metrics": all_metrics,
         "policies": policies_answer,
@@ -97,8 +102,8 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         "template": templates_answer,
         "templates": templates_answer,
     }
-    if name in lists:
-        return lists[name]()
+    if (listed := next((word for word in (name.lower(), topic.strip()) if word in lists), None)) is not None:
+        return lists[listed]()
     metric = _metric_named(words)
     if metric is not None:
         answer = metric_answer(metric)
@@ -256,6 +261,8 @@ def _part(schema: Node, path: tuple[str, ...], nodes: list[Node]) -> Answer:
             text += " Part of the language, but not simulated by this version."
         if feature is not None and feature.origin != "built-in":
             text += f" Provided by {feature.origin}."
+        if registry.kind == "behavior" and (advice := advice_among_people(feature_name)):
+            text += f" {advice}"
     return Answer(
         topic=".".join(path),
         kind="component" if feature_name else "key",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Literal
 
 from pydantic import Field
 
 from irsim.common.lazy import call_home
-from irsim.common.notebook import facts, section, table
-from irsim.common.text import listed
+from irsim.common.notebook import facts, section, table, text_table
+from irsim.common.text import clean, listed
 from irsim.results.base import Result
 from irsim.results.findings import Finding
 
@@ -247,10 +248,20 @@ class BenchmarkResult(Result):
         """
         return call_home("irsim.benchmarks.report.table:result_frame", self)
 
+    def __repr__(self) -> str:
+        lines = [f"Benchmark of {len(self.seeds)} seeds, {len(self.episodes)} episodes", text_table(*self._table())]
+        return "\n".join([*lines, f"reproduce: {clean(self.reproduce, 400)}"])
+
+    __str__ = __repr__
+
     def _repr_html_(self) -> str:
         known = {"seeds": len(self.seeds), "episodes": len(self.episodes), "reproduce": self.reproduce}
+        return section("Benchmark", table(*self._table()), facts(known))
+
+    def _table(self) -> tuple[Sequence[str], list[Sequence[object]]]:
+        """The columns and rows that show the result."""
         columns = ("scenario", "policy", "episodes", "success", "95 % interval", "collision", "timeout")
-        rows = [
+        rows: list[Sequence[object]] = [
             (
                 row.scenario, row.behavior, row.episodes, _percent(row.success.rate),
                 f"{_percent(row.success.low)} to {_percent(row.success.high)}" if row.success.low is not None else None,
@@ -258,7 +269,7 @@ class BenchmarkResult(Result):
             )
             for row in self.rows
         ]  # fmt: skip
-        return section("Benchmark", table(columns, rows), facts(known))
+        return columns, rows
 
 
 def _percent(share: float | None) -> str:

@@ -153,22 +153,30 @@ class RunResult(Result):
     """Parts that the record leaves out because there was too much of them, and messages of bridges."""
     _again: Again | None = PrivateAttr(None)
 
-    def to_pandas(self, *, objects: str | Sequence[str] = "movers", ranges: bool = False) -> Any:
-        """A table of pandas with one row per step and object, and the columns that ``irsim export`` writes as Parquet.
+    def to_pandas(
+        self,
+        rows: Literal["steps", "robots"] = "steps",
+        *,
+        objects: str | Sequence[str] = "movers",
+        ranges: bool = False,
+    ) -> Any:
+        """A table of pandas; of steps with the columns that ``irsim export`` writes as Parquet.
 
-        A run without a recording (``record=True`` makes one) is simulated again for it. ``attrs["units"]`` of the
-        table has the unit of each column.
+        For a table of steps, a run without a recording (``record=True`` makes one) is simulated again.
+        ``attrs["units"]`` of that table has the unit of each column.
 
         Args:
-            objects: ``movers`` (robots, and obstacles that can move), ``robots``, ``people``, ``all``, or names.
-            ranges: Whether the table has the ranges of lidars.
+            rows: ``steps``: one row per step and object; ``robots``: one row per robot, with the facts of ``robots``.
+            objects: Which objects the rows of steps have: ``movers`` (robots, and obstacles that can move), ``robots``,
+                ``people``, ``all``, or names.
+            ranges: Whether the rows of steps have the ranges of lidars.
 
         Raises:
             ExtraError: pandas is missing.
-            InputError: The run has no recording and cannot be simulated again.
+            InputError: There is no such kind of rows, or the run has no recording and cannot be simulated again.
             RunError: There is no such object, or the recording was deleted.
         """
-        return call_home("irsim.api.kept_run:run_table", self, objects, ranges)
+        return call_home("irsim.api.kept_run:runs_table", [self], rows, objects, ranges)
 
     def replay(self, height: int = 640) -> Page:
         """The replay of the run: a page that a notebook shows below the cell; ``.save("replay.html")`` writes it.
@@ -305,7 +313,7 @@ class RunsResult(Result):
             ExtraError: pandas is missing.
             InputError: There is no such kind of rows, or a run cannot be simulated again.
         """
-        return call_home("irsim.api.kept_run:runs_table", self, rows, objects, ranges)
+        return call_home("irsim.api.kept_run:runs_table", self.episodes, rows, objects, ranges)
 
     def _repr_html_(self) -> str:
         columns = ("seed", "outcome", "simulated [s]", "reason")

@@ -10,7 +10,7 @@ import pytest
 
 import irsim
 from irsim.api.kept_run import recorded_run
-from irsim.common.extras import ExtraError
+from irsim.common.extras import ExtraError, require
 from irsim.diagnostics.errors import InputError
 
 SCENE = """
@@ -58,6 +58,44 @@ def test_a_scenario_that_has_changed_gives_no_table_of_another_episode(scene: Pa
         recorded_run(result)
     with pytest.raises(InputError, match="read from a file or another process"):
         recorded_run(pickle.loads(pickle.dumps(result)))
+
+
+@pytest.mark.records
+def test_a_run_has_a_table_of_its_robots_as_several_runs_have(scene: Path) -> None:
+    table = irsim.run(scene, seed=3).to_pandas("robots")
+    assert [*table["seed"]] == [3]
+    assert [*table["outcome"]] == ["timeout"]
+
+
+def test_a_table_of_other_rows_is_refused_with_those_that_exist(scene: Path) -> None:
+    with pytest.raises(InputError, match="choose steps or robots"):
+        irsim.run(scene).to_pandas("episodes")  # type: ignore[arg-type]
+
+
+def test_a_benchmark_is_printed_as_a_short_table(scene: Path) -> None:
+    lines = str(irsim.benchmark([scene], ["dash", "orca"], seeds=1)).splitlines()
+    assert lines[1].split() == [
+        "scenario",
+        "policy",
+        "episodes",
+        "success",
+        "95",
+        "%",
+        "interval",
+        "collision",
+        "timeout",
+    ]
+    assert [line.split()[1:4] for line in lines[2:4]] == [["dash", "1", "0%"], ["orca", "1", "0%"]]
+    assert lines[4].startswith("reproduce: irsim benchmark")
+    assert len(lines) == 5
+
+
+def test_a_missing_torch_is_told_with_its_size_and_the_index_for_processors(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("irsim.common.extras.find_spec", lambda name: None)
+    with pytest.raises(ExtraError, match=r"whl/cpu \(1 GB in all, with CUDA 5.6 GB\); .*irsim-mcp\[learn\]"):
+        require("learn", "torch", "gymnasium")
+    with pytest.raises(ExtraError, match="Fix: install the extra"):
+        require("gym", "gymnasium")
 
 
 def test_a_missing_pandas_is_one_error_with_the_command(scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:

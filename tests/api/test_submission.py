@@ -185,6 +185,11 @@ def test_the_command(written: Path, tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["audit", str(tmp_path / "nothing")])
     assert done.exit_code == 1
     assert "unknown-run" in done.output
+    (tmp_path / "results").mkdir()
+    done = CliRunner().invoke(app, ["audit", str(tmp_path / "results")])
+    assert done.exit_code == 2
+    assert "neither a submission (submission.json) nor a recorded run (run.json)" in done.output
+    assert "irsim benchmark SUITE --submission DIR" in done.output
     done = CliRunner().invoke(app, ["benchmark", "x.yaml", "--submission", str(tmp_path / "new")])
     assert done.exit_code == 2
     assert "belongs to a suite" in done.output

@@ -35,6 +35,12 @@ def test_a_path_gives_type_unit_default_and_meaning(irsim: Run) -> None:
     assert about.text
 
 
+def test_what_a_word_probably_means_comes_before_other_topics(irsim: Run) -> None:
+    shown = irsim("describe", "lidar", code=0).stdout
+    assert shown.startswith("sensor lidar2d")
+    assert 0 < shown.index("range_max") < shown.index("robot.sensors.fmcw_lidar2d")
+
+
 @pytest.mark.parametrize(
     "topic",
     ["robot[0].vel_max", "obstacle.shape.circle.radius", "world.plot.viewpoint", "gui.keyboard", "world", "robot"],

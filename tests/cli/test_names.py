@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import random
 import re
 import subprocess
 import sys
@@ -15,7 +16,9 @@ import pytest
 import typer
 
 from irsim.cli.app import COMMANDS, app
+from irsim.cli.completion import offers
 from irsim.cli.names import OLD_NAMES
+from irsim.lookup import lookup
 from tests.cli.conftest import Run
 
 pytestmark = pytest.mark.one_python
@@ -123,6 +126,11 @@ def completed(line: str, folder: Path) -> list[str]:
         ("irsim benchmark room.yaml --policies dash,orc", "dash,orca"),
         ("irsim describe robot.sensors.lidar2d.range_m", "robot.sensors.lidar2d.range_max"),
         ("irsim describe unknown-sens", "unknown-sensor"),
+        ("irsim describe lida", "lidar2d"),
+        ("irsim describe vel_m", "vel_max"),
+        ("irsim describe corridor_soc", "corridor_social"),
+        ("irsim describe task.goal_li", "task.goal_lidar"),
+        ("irsim describe passed_thr", "passed_through"),
         ("irsim new corridor-pas", "corridor-passing"),
         ("irsim new corridor-passing --set wid", "width="),
         ("irsim train goal_li", "goal_lidar"),
@@ -139,12 +147,22 @@ def test_the_tab_key_completes_values(line: str, offered: str, irsim: Run, room:
     assert any(word.startswith(offered) for word in completed(line, tmp_path))
 
 
+def test_every_kind_of_topic_that_is_offered_is_answered() -> None:
+    offer = offers("describe", "topic")
+    assert offer is not None
+    offered = offer(None, None, "")
+    assert len(offered) > 1000
+    for topic in random.Random(1).sample(offered, 40):
+        assert (topic, lookup(topic).read_as) == (topic, None)
+
+
 def test_last_1_is_the_run_before_the_last(irsim: Run, room: Path) -> None:
     irsim("run", "room.yaml", "--seed", "1", "--record", code=0)
     irsim("run", "room.yaml", "--steps", "5", "--record", code=0)
     assert "5 steps" in irsim("inspect", "last", code=0).stdout or "to 5" in irsim("inspect", "last", code=0).stdout
     assert "step" in irsim("diff-runs", "last-1", "last", code=1).stdout
-    irsim("diff-runs", "last", "last", code=0)
+    assert irsim("diff-runs", code=1).stdout == irsim("diff-runs", "last-1", "last", code=1).stdout
+    irsim("diff-runs", "last", code=0)
     irsim("render", "last-1", "-o", "before.png", code=0)
     assert "unknown-run" in irsim("replay", "last-2", code=2).stderr
 

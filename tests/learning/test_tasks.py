@@ -105,6 +105,13 @@ def test_a_file_of_the_current_folder_comes_before_a_bundled_task_of_its_name(
     assert open_task(name)[0].version == 77
 
 
+def test_a_scenario_is_told_from_a_task(tmp_path: Path) -> None:
+    file = tmp_path / "hall.yaml"
+    file.write_text("world: {width: 5, height: 5}\nrobot: {state: [1, 1, 0], goal: [4, 4]}\n", encoding="utf-8")
+    with pytest.raises(TaskError, match=r"hall.yaml is a scenario.*'file: .*hall.yaml'.* describe task.goal_lidar"):
+        open_task(str(file))
+
+
 def test_an_unknown_key_is_marked_itself(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text(TASKS.bundled(TASKS.names()[0]).read_text(encoding="utf-8") + "\nnumbr: 5\n")

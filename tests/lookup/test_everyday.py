@@ -31,6 +31,12 @@ MEANT = {
     "unicycle": "robot.kinematics.diff",
     "omnidirectional": "robot.kinematics.omni",
     "holonomic": "robot.kinematics.omni",
+    "freeze": "crowd-stops",
+    "frozen crowd": "crowd-stops",
+    "2.12": "differences",
+    "IR-SIM 2.12": "differences",
+    "how to cite": "cite",
+    "unknown cells": "unknown-cells",
     "pedestrian": "robot.behavior.sfm",
     "social force": "robot.behavior.sfm",
     "social force model": "robot.behavior.sfm",
@@ -97,6 +103,22 @@ def test_the_sensor_comes_before_templates_that_have_one(word: str) -> None:
     (hits,) = lookup(word, schema=SCHEMA).groups.values()
     assert hits[0].name == "robot.sensors.lidar2d"
     assert hits[0].text
+
+
+def test_a_frozen_crowd_is_explained_first() -> None:
+    for words in ("freeze", "frozen crowd"):
+        best = lookup(words, schema=SCHEMA).best
+        assert (words, best and best.topic) == (words, "crowd-stops")
+
+
+def test_the_law_of_people_says_which_options_it_needs_among_those_who_do_not_yield() -> None:
+    assert "force_factor_social: 12, safety_radius: 0.5" in lookup("sfm", schema=SCHEMA).text
+    assert "do not give way" not in lookup("orca", schema=SCHEMA).text
+
+
+def test_the_differences_from_the_old_program_are_listed() -> None:
+    (lines,) = lookup("2.12", schema=SCHEMA).groups.values()
+    assert {"D1", "D26", "api-26"} <= {line.name for line in lines}
 
 
 def test_every_topic_that_has_everyday_names_exists() -> None:

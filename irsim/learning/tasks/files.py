@@ -75,6 +75,10 @@ def open_task(source: TaskSource) -> tuple[Task, Path]:
 
 def _error(document: Document, problems: Sequence[Diagnostic]) -> TaskError:
     name = clean(document.name or "the task", 200)
+    if {one.path[0] for one in problems if one.code == "unknown-key"} >= {"world", "robot"}:
+        what = f"{name} is a scenario, and a task adds to one what learning needs: an observation and a reward"
+        wanted = f"write a task with 'file: {name}' in place of its scenario"
+        return TaskError(what, f"{wanted}: irsim describe task.goal_lidar has one to start from", problems)
     text = format_diagnostics(problems, document.text)
     return TaskError(f"{name} is not a valid task\n{text}", "`irsim describe task` lists the keys of a task", problems)
 
