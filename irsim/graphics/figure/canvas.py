@@ -63,12 +63,18 @@ class Canvas:
         (xx, xy, x), (yx, yy, y), _ = matrix.tolist()
         self.painter = core.Painter(self.size, self.clip, (xx, xy, x, -yx, -yy, self.height - y))
         self._matrix = matrix
+        self._rows = (xx, xy, x), (yx, yy, y)
         same = earlier is not None and (earlier.size, earlier.dpi) == (self.size, self.dpi)
         self._scratch: Any = earlier._scratch if earlier is not None and same else None
 
     def to_pixels(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Convert points (N, 2) of the world to pixels from the lower left corner."""
         return np.asarray(points @ self._matrix[:2, :2].T + self._matrix[:2, 2])
+
+    def to_pixel(self, x: float, y: float) -> tuple[float, float]:
+        """Convert a point of the world to pixels from the lower left corner."""
+        (xx, xy, left), (yx, yy, low) = self._rows
+        return xx * x + xy * y + left, yx * x + yy * y + low
 
     def new_renderer(self) -> Any:
         """Return a transparent canvas of the same size."""

@@ -71,6 +71,7 @@ class QuickText(Text):
     def __init__(self, glyphs: Glyphs, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self._glyphs = glyphs
+        self._composed: tuple[Hashable, list[_Piece]] | None = None
         self.halo: tuple[Any, float] | None = None
 
     def draw(self, renderer: Any) -> None:
@@ -97,7 +98,7 @@ class QuickText(Text):
             return False
         if not self.get_text():
             return True
-        pieces, across, up = self._layout(canvas.renderer)
+        pieces, across, up = self._layout(canvas.renderer, canvas)
         baseline = canvas.height - round(up)
         for piece in pieces:
             top = baseline + piece.below - piece.bitmap.shape[0]
@@ -119,15 +120,29 @@ class QuickText(Text):
         plain = not self.get_path_effects() and self.get_rotation() == 0 and "\n" not in self.get_text()
         return plain and isinstance(renderer, RendererAgg)
 
-    def _layout(self, renderer: Any) -> tuple[list[_Piece], float, float]:
+    def _layout(self, renderer: Any, canvas: Canvas | None = None) -> tuple[list[_Piece], float, float]:
         """Return the pieces, and the position of the first on the baseline [px]."""
-        look = (self.get_fontproperties(), self.get_color(), self.get_alpha(), renderer.dpi, self.halo)
-        texts = _PIECES.findall(self.get_text()) if self.halo is None else [self.get_text()]  # halos must not overlap
-        pieces = [self._glyphs.get((text, *look), partial(self._render_piece, text, renderer)) for text in texts]
-        across, up = self.get_transform().transform(self.get_unitless_position())
-        total = sum(piece.advance for piece in pieces)
-        across -= {"left": 0.0, "center": total / 2, "right": total}[self.get_horizontalalignment()]
-        return pieces, float(across), float(up)
+        pieces = self._pieces(renderer)
+        if canvas is not None and self.axes is not None and self.get_transform() is self.axes.transData:
+            across, up = canvas.to_pixel(*self.get_unitless_position())
+        else:
+            across, up = map(float, self.get_transform().transform(self.get_unitless_position()))
+        alignment = self.get_horizontalalignment()
+        if alignment != "left":
+            total = sum(piece.advance for piece in pieces)
+            across -= total / 2 if alignment == "center" else total
+        return pieces, across, up
+
+    def _pieces(self, renderer: Any) -> list[_Piece]:
+        """Return the bitmaps of the text, which are looked up again only if text, font, colour or halo have changed."""
+        font, text = self.get_fontproperties(), self.get_text()
+        names = font.get_family(), font.get_style(), font.get_variant(), font.get_weight(), font.get_stretch()
+        look = str(names), font.get_size(), font.get_file(), self.get_color(), self.get_alpha(), renderer.dpi, self.halo
+        if self._composed is None or self._composed[0] != (text, look):
+            texts = _PIECES.findall(text) if self.halo is None else [text]  # halos must not overlap
+            pieces = [self._glyphs.get((one, look), partial(self._render_piece, one, renderer)) for one in texts]
+            self._composed = (text, look), pieces
+        return self._composed[1]
 
     def _render_piece(self, piece: str, renderer: Any) -> _Piece:
         properties = self.get_fontproperties()

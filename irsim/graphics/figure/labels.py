@@ -77,21 +77,14 @@ class LabelLayer:
                 text.set_path_effects(self._effects)
                 self.ax.add_artist(text)
             shown[key] = label, text
-            text.set_visible(True)
-            if self._placed and self._known.get(key) == label:
-                continue
-            self._known[key] = label
-            text.set_text(printable(label.text))
-            text.set_position((label.x, label.y))
-            text.set_color(rgba(label.color))
-            text.set_fontsize(label.size)
-            text.set_alpha(label.alpha)
-            text.set_zorder(label.zorder + _LABEL_ZORDER_STEP)
-            text.set_fontweight("bold" if label.bold else "normal")
-            text.set_fontstyle("italic" if label.italic else "normal")
-            text.halo = None if label.halo is None else (rgba(label.halo[0]), label.halo[1])
+            if not text.get_visible():
+                text.set_visible(True)
+            before = self._known.get(key)
+            if not self._placed or before is not label:
+                self._known[key] = label
+                _change(text, before, label)
         for key, text in self._texts.items():
-            if key not in shown:
+            if key not in shown and text.get_visible():
                 text.set_visible(False)
         if shown and not self._placed:
             self._place(list(shown.values()), anchors[seen], scene)
@@ -154,6 +147,25 @@ class LabelLayer:
             x, y = self.ax.transData.transform(text.get_position())
             extent = self._extents[key] = float(box.x0 - x), float(box.y0 - y), float(box.x1 - x), float(box.y1 - y)
         return extent
+
+
+def _look(label: Label) -> tuple[object, ...]:
+    return label.text, label.color, label.size, label.alpha, label.zorder, label.bold, label.italic, label.halo
+
+
+def _change(text: QuickText, before: Label | None, label: Label) -> None:
+    """Let a text show a label; most labels only move."""
+    text.set_position((label.x, label.y))
+    if before is not None and _look(before) == _look(label):
+        return
+    text.set_text(printable(label.text))
+    text.set_color(rgba(label.color))
+    text.set_fontsize(label.size)
+    text.set_alpha(label.alpha)
+    text.set_zorder(label.zorder + _LABEL_ZORDER_STEP)
+    text.set_fontweight("bold" if label.bold else "normal")
+    text.set_fontstyle("italic" if label.italic else "normal")
+    text.halo = None if label.halo is None else (rgba(label.halo[0]), label.halo[1])
 
 
 def _in_pixels(boxes: list[Bounds], data: Transform) -> Floats:

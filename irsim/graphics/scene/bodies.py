@@ -151,7 +151,10 @@ def bounds(geometry: Geometry) -> tuple[float, float, float, float]:
     if isinstance(geometry, Circle | Sector):
         x, y, r = geometry.x, geometry.y, geometry.radius
         return x - r, y - r, x + r, y + r
-    points = np.concatenate(geometry.rings) if isinstance(geometry, Region) else geometry.points.reshape(-1, 2)
+    if isinstance(geometry, Region):
+        points = geometry.rings[0] if len(geometry.rings) == 1 else np.concatenate(geometry.rings)
+    else:
+        points = geometry.points.reshape(-1, 2)
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
     reach = geometry.radius if isinstance(geometry, Spots) else 0.0
     return float(x0 - reach), float(y0 - reach), float(x1 + reach), float(y1 + reach)

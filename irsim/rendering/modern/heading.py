@@ -20,7 +20,7 @@ from irsim.simulation.outcome import is_over
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["facts_of", "heading_parts", "legend_parts", "outcome_word", "title_text"]
+__all__ = ["facts_of", "heading_parts", "legend_parts", "outcome_word", "time_text", "title_text"]
 
 _GAP, _PILL_PAD = 9.0, 8.0
 _TINT = 0.06
@@ -50,7 +50,12 @@ def outcome_word(simulation: Simulation, world: int, collisions: int) -> str:
 
 def title_text(name: str, seconds: float, word: str) -> str:
     """The title as one text, such as ``crossing 9.0 s running``."""
-    return f"{name} {seconds:.1f} s {word}".strip()
+    return f"{name} {time_text(seconds)} {word}".strip()
+
+
+def time_text(seconds: float) -> str:
+    """Simulated time as the title says it."""
+    return f"{seconds:.1f} s"
 
 
 def facts_of(things: Sequence[Thing], crowd: Crowd, word: str, *, short: bool) -> list[str]:
@@ -86,7 +91,7 @@ def heading_parts(
     left, end = layout.left, layout.width - layout.left
     marks, labels = list[Mark](), list[Label]()
     number = FRAME
-    time, facts_size = f"{seconds:.1f} s", size.facts
+    time, facts_size = time_text(seconds), size.facts
     pill = sizes.width(word, facts_size, bold=True) + 2 * _PILL_PAD if word else 0.0
     room = end - left - sizes.width(time, size.title) - pill - 2 * _GAP
     shown = clean(name, _MAX_NAME)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from irsim.common.arrays import Floats
 from irsim.graphics.figure.measuring import TextSizes
 from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.scene import Label, Line, Mark
+from irsim.graphics.scene.scene import Bounds, Label, Line, Mark
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern.frame import label, stroke
 from irsim.rendering.modern.layout import Layout
@@ -68,6 +68,7 @@ def place_names(
     layout: Layout,
     theme: Theme,
     sizes: TextSizes,
+    known: dict[Mark, Bounds],
 ) -> tuple[list[Mark], list[Label], int]:
     """Find places for texts, the most important first.
 
@@ -78,15 +79,22 @@ def place_names(
         layout: The layout.
         theme: The colours.
         sizes: Measures texts.
+        known: Boxes of the marks of the picture before with this layout [u]; it receives those of these marks.
 
     Returns:
         Lines to texts that stand away, the labels, and the number of texts without a place.
     """
     if not wishes:
         return [], [], 0
-    taken = [_box(mark, layout) for mark in marks if mark.part in _TAKEN or _is_moving(mark)]
-    taken += [_text_box(one, layout, sizes) for one in fixed]
-    walls = np.array([_box(m, layout) for m in marks if m.part == "body" and not _is_moving(m)]).reshape(-1, 4)
+    before = dict(known)
+    known.clear()
+    for mark in marks:
+        if mark.part in _TAKEN or mark.part == "body":
+            box_before = before.get(mark)
+            known[mark] = _box(mark, layout) if box_before is None else box_before
+    blocks = [box for mark, box in known.items() if mark.part in _TAKEN or _is_moving(mark)]
+    taken = np.array(blocks + [_text_box(one, layout, sizes) for one in fixed]).reshape(-1, 4)
+    walls = np.array([box for m, box in known.items() if m.part == "body" and not _is_moving(m)]).reshape(-1, 4)
     lines = [(cost, _points(marks, part, layout)) for part, cost in _LINE_COSTS]
     x0, x1, y0, y1 = layout.world
     low, high = layout.places(np.array([(x0, y0), (x1, y1)]))
@@ -96,14 +104,14 @@ def place_names(
         width = sizes.width(wish.text, size, bold=True)
         places = _places(wish, layout, width, size)
         free = np.all((places[:, :2] >= low + 1) & (places[:, 2:] <= high - 1), axis=1)
-        free &= ~_overlaps(places, np.array(taken).reshape(-1, 4)).any(axis=1)
+        free &= ~_overlaps(places, taken).any(axis=1)
         if not free.any():
             dropped += 1
             continue
         cost = _PLACE_COSTS + _WALL_COST * _overlaps(places, walls).any(axis=1)
         chosen = _cheapest(places, np.where(free, cost, np.inf), lines)
         box = places[chosen]
-        taken.append((float(box[0]), float(box[1]), float(box[2]), float(box[3])))
+        taken = np.concatenate([taken, box[None]])
         place = layout.at(float(box[0]), float(box[1]) + _DESCENT * size)
         halo = (theme.paper, _HALO)
         labels.append(
@@ -161,7 +169,7 @@ def _is_moving(mark: Mark) -> bool:
     return mark.part == "body" and mark.zorder >= _MOVING_Z
 
 
-def _box(mark: Mark, layout: Layout) -> tuple[float, float, float, float]:
+def _box(mark: Mark, layout: Layout) -> Bounds:
     left, bottom, right, top = bounds(mark.geometry)
     x, y, scale = layout.world[0], layout.world[2], layout.scale
     return (
@@ -188,6 +196,12 @@ def _points(marks: Sequence[Mark], part: str, layout: Layout) -> Floats:
         return layout.places(np.concatenate([np.empty((0, 2)), *lines]))
     places = list[Floats]()
     for points in map(layout.places, lines):
+        if len(points) == 2:
+            length = float(np.hypot(*(points[1] - points[0])))
+            places.append(
+                points[0] + np.linspace(0.0, 1.0, 2 + int(length / _SPREAD))[:, None] * (points[1] - points[0])
+            )
+            continue
         along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])  # corners are far apart
         at = np.linspace(0.0, along[-1], 2 + int(along[-1] / _SPREAD))
         places.append(np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1))

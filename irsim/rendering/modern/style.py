@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from irsim.graphics.figure.measuring import TextSizes
 from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.scene import Circle, GridImage, Label, Mark, Scene, Stroke
+from irsim.graphics.scene.scene import Bounds, Circle, GridImage, Label, Mark, Scene, Stroke
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern import bodies, frame, ground, heading, names, sensing, signs, ways
 from irsim.rendering.modern.layout import Layout
@@ -90,6 +90,9 @@ class ModernStyle:
         self._maps: dict[int, tuple[GridImage, GridImage, list[Mark]]] = {}
         self._fog: tuple[Any, list[Mark]] = (None, [])
         self._parts: dict[tuple[Any, ...], Parts] = {}
+        self._head: tuple[Any, Parts] | None = None
+        self._boxes: dict[Mark, Bounds] = {}
+        self._name = name_of(simulation)
 
     def draw(self, scene: Scene, builder: SceneBuilder, layout: Layout, request: Request) -> Scene:
         """Return the picture of a scene.
@@ -136,7 +139,7 @@ class ModernStyle:
                 marks += signs.state_marks(thing, layout, theme, level=crowd.level)
         labels += self._same(("axes",), lambda: ([], frame.axis_labels(layout, theme)))[1] if request.axes else []
         wishes = _wishes(things, own, crowd, layout, theme) if request.names else []
-        leaders, named, dropped = names.place_names(wishes, marks, labels, layout, theme, self.sizes)
+        leaders, named, dropped = names.place_names(wishes, marks, labels, layout, theme, self.sizes, self._boxes)
         marks += leaders
         labels += named
         self.notes = _notes(crowd, dropped)
@@ -174,6 +177,8 @@ class ModernStyle:
         self._page = frame.frame_marks(layout, self.theme, walls=walls)
         self._still.clear()
         self._parts.clear()
+        self._boxes.clear()
+        self._head = None
         self._maps.clear()
         self._fog = (None, [])
 
@@ -272,11 +277,17 @@ class ModernStyle:
             return [], []
         self.word = word = heading.outcome_word(self.simulation, self.world, collisions)
         if layout.sizes.kind == "strip":
-            shown = "" if word == request.said else word
-            return heading.heading_parts("", scene.time, shown, [], layout, self.theme, self.sizes)
-        facts = heading.facts_of(things, crowd, word, short=layout.sizes.kind == "print")
-        name = name_of(self.simulation) if request.title is None else request.title
-        return heading.heading_parts(name, scene.time, word, facts, layout, self.theme, self.sizes)
+            name, shown, facts = "", "" if word == request.said else word, list[str]()
+        else:
+            name, shown = self._name if request.title is None else request.title, word
+            facts = heading.facts_of(things, crowd, word, short=layout.sizes.kind == "print")
+        time = heading.time_text(scene.time)
+        key = name, shown, facts, len(time)
+        if self._head is None or self._head[0] != key:
+            parts = heading.heading_parts(name, scene.time, shown, facts, layout, self.theme, self.sizes)
+            self._head = key, parts
+        marks, labels = self._head[1]
+        return marks, [replace(one, text=time) if one.part == "time" else one for one in labels]
 
 
 def name_of(simulation: Simulation) -> str:
