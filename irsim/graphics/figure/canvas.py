@@ -102,11 +102,15 @@ def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
         ValueError: The colour is not valid.
     """
     given: Any = color
-    red, green, blue, opacity = _levels(color) if isinstance(color, str) and color[:1] == "#" else to_rgba(given)
+    return _known(color, alpha) if isinstance(color, str) and color[:1] == "#" else _faded(given, alpha)
+
+
+def _faded(color: Any, alpha: float) -> tuple[float, float, float, float]:
+    red, green, blue, opacity = to_rgba(color)
     return red, green, blue, opacity * float(alpha)
 
 
-_levels = lru_cache(maxsize=_KNOWN_COLORS)(to_rgba)
+_known = lru_cache(maxsize=_KNOWN_COLORS)(_faded)
 
 
 def paint(

@@ -124,7 +124,7 @@ class QuickText(Text):
         """Return the pieces, and the position of the first on the baseline [px]."""
         pieces = self._pieces(renderer)
         if canvas is not None and self.axes is not None and self.get_transform() is self.axes.transData:
-            across, up = canvas.to_pixel(*self.get_unitless_position())
+            across, up = canvas.to_pixel(*self.get_position())
         else:
             across, up = map(float, self.get_transform().transform(self.get_unitless_position()))
         alignment = self.get_horizontalalignment()

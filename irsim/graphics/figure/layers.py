@@ -51,6 +51,8 @@ PARTS = (
 )
 """Drawing order of the parts that have the same zorder."""
 
+_RANKS = {part: rank for rank, part in enumerate(PARTS)}
+
 ZORDER_STEP = 1e-3
 """Added to the zorder per rank in `PARTS`.
 
@@ -68,7 +70,7 @@ _FAR, _NEAR = 40.0, 3.0
 
 def layer_key(part: str, zorder: float, round_caps: bool = False) -> tuple[Any, ...]:
     """Return the key of the layer that a mark belongs to; keys sort in drawing order."""
-    return float(zorder), PARTS.index(part), round_caps
+    return float(zorder), _RANKS[part], round_caps
 
 
 class MarkArtist(PathCollection):
@@ -122,7 +124,7 @@ class MarkArtist(PathCollection):
         )
 
     def _is_plain(self) -> bool:
-        return all(is_paintable(mark, self.scale) for mark in self.marks)
+        return all(mark.stroke.style in SOLID or is_paintable(mark, self.scale) for mark in self.marks)
 
     def _paint(self, canvas: Canvas) -> None:
         if self.marks:

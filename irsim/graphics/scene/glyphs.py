@@ -16,16 +16,20 @@ __all__ = [
     "ARRIVED_SHARE",
     "BADGES",
     "BADGE_LINE",
+    "CROWD",
     "DART",
     "EDGES",
     "FOOTPRINT",
     "GLOW",
     "GOAL",
+    "NAME",
     "PEOPLE",
     "RIM_U",
     "RINGS",
+    "SMALLER",
     "SMALL_PERSON_U",
     "STAR",
+    "STARS",
     "People",
     "glyph_table",
     "long_dart",
@@ -69,8 +73,15 @@ SMALL_PERSON_U = 8.0
 """A person with a smaller radius is drawn as a small one [u]."""
 FOOTPRINT = {"fill": 0.13, "rim": 0.45}
 """Opacities of the footprint of a person."""
-GOAL = {"dot": 0.36, "fill": 0.12, "dart": 0.8}
-"""The dot in a goal, the opacity of its fill, and the radius of its dart where the heading counts."""
+CROWD: dict[str, int] = {"few": 12, "many": 50, "timed": 8}
+"""Numbers of robots up to which everything and most things are drawn, and of contacts up to which each has its time."""
+SMALLER = (1.0, 0.85, 0.62)
+"""Factor of the least radius of robots: of few, of some and of many."""
+GOAL = {"dot": 0.36, "fill": 0.12, "dart": 0.8, "open": 6.0}
+"""The dot in a goal, the opacity of its fill, the radius of its dart where the heading counts, and the diameter of the
+open dot that is a goal where there are more than a few robots [u]."""
+NAME = {"halo": 2.6, "gap": 4.0}
+"""Width of the halo of names, and their distance from the thing that they name [u]."""
 BADGES: dict[str, list[Points]] = {
     "arrived": [[(-0.45, 0.0), (-0.12, -0.36), (0.48, 0.34)]],
     "collided": [[(-0.36, -0.36), (0.36, 0.36)], [(-0.36, 0.36), (0.36, -0.36)]],
@@ -79,8 +90,14 @@ BADGES: dict[str, list[Points]] = {
 """Lines of the signs in badges."""
 BADGE_LINE = 0.24
 """Width of these lines."""
-RINGS = {"collided": {"width": 2.2, "gap": 3.2}, "picked": {"width": 2.0, "gap": 5.0}}
-"""Rings around robots [u]."""
+RINGS = {
+    "collided": {"width": 2.2, "gap": 3.2},
+    "picked": {"width": 2.0, "gap": 5.0},
+    "crowded": {"width": 1.2, "gap": 0.0},
+}
+"""Rings around robots [u]; where there are many, a ring stands for the badge."""
+STARS = {"others": 5.0, "crowded": 4.0}
+"""Radius of the star of a contact between others, and of all stars where there are many robots [u]."""
 RIM_U = 1.1
 """Width of the rim of badges and stars, in the colour of the paper [u]."""
 ARRIVED_SHARE = 0.45
@@ -88,7 +105,7 @@ ARRIVED_SHARE = 0.45
 GLOW = {"light": 0.17, "dark": 0.30, "fall": 0.62, "soft": 0.1}
 """The area that a lidar finds free: its opacity at the lidar by theme, how much of that is lost towards the end of the
 range, and the last share of the range, over which it fades to nothing."""
-EDGES = {"robot": 1.4, "still": 1.2, "person": 1.0, "round_halo": 1.2, "other_halo": 1.7}
+EDGES = {"robot": 1.4, "still": 1.2, "person": 1.0, "round_halo": 1.2, "other_halo": 1.7, "line": 2.0}
 """Widths of edges and halos of bodies [u]."""
 
 
@@ -118,6 +135,10 @@ def glyph_table() -> str:
         "smallPerson": SMALL_PERSON_U,
         "footprint": FOOTPRINT,
         "goal": GOAL,
+        "crowd": CROWD,
+        "smaller": SMALLER,
+        "name": NAME,
+        "stars": STARS,
         "badges": BADGES,
         "badgeLine": BADGE_LINE,
         "rings": RINGS,

@@ -42,7 +42,7 @@ def still_marks(thing: Thing, theme: Theme) -> list[Mark]:
         return []
     plot = thing.view.record.plot
     if isinstance(body.geometry, Line):
-        line = stroke(theme.wall, 2.0, plot.obj_linestyle)
+        line = stroke(theme.wall, EDGES["line"], plot.obj_linestyle)
         return [Mark(thing.number, "body", body.geometry, None, line, body.alpha, _WALL_Z)]
     edge = stroke(thing.shades.edge, EDGES["still"], plot.obj_linestyle)
     return [Mark(thing.number, "body", body.geometry, thing.shades.fill, edge, body.alpha, STILL_Z)]
@@ -54,7 +54,7 @@ def moving_marks(thing: Thing, theme: Theme) -> list[Mark]:
     if body is None:
         return []
     if isinstance(body.geometry, Line):
-        line = stroke(thing.shades.fill, 2.0)
+        line = stroke(thing.shades.fill, EDGES["line"])
         return [Mark(thing.number, "body", body.geometry, None, line, body.alpha, _PERSON_Z)]
     rim = stroke(theme.paper, EDGES["person"])
     return [Mark(thing.number, "body", body.geometry, thing.shades.fill, rim, body.alpha, _PERSON_Z)]

@@ -80,6 +80,10 @@ class Layout:
         """The point of the world [m] at a place of the picture [u], from its lower left corner."""
         return self.world[0] + (x - self.left) / self.scale, self.world[2] + (y - self.bottom) / self.scale
 
+    def place(self, x: float, y: float) -> tuple[float, float]:
+        """The place of a point of the world in the picture [u]."""
+        return (x - self.world[0]) * self.scale + self.left, (y - self.world[2]) * self.scale + self.bottom
+
     def places(self, points: Floats) -> Floats:
         """Places of points (N, 2) of the world in the picture [u]."""
         start = np.array([self.world[0], self.world[2]])

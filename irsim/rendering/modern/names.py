@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.graphics.figure.measuring import TextSizes
 from irsim.graphics.scene.bodies import bounds
+from irsim.graphics.scene.glyphs import NAME
 from irsim.graphics.scene.scene import Bounds, Label, Line, Mark
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern.frame import label, stroke
@@ -19,15 +20,15 @@ from irsim.rendering.modern.layout import Layout
 __all__ = ["Wish", "place_names"]
 
 _NAME_Z, _LEADER_Z = 7.0, 6.5
-_GAPS = (4.0, 14.0, 26.0)
+_GAPS = (NAME["gap"], 14.0, 26.0)
 """Distances of a name from its thing [u]; the farther ones have a line to it."""
 _GAP_COST = (0.0, 0.3, 0.6)
 _WALL_COST, _PLAN_COST, _TRAIL_COST, _ORDER_COST = 0.15, 0.12, 0.06, 0.01
 _LINE_COSTS = (("plan", _PLAN_COST), ("trajectory", _TRAIL_COST))
 _PLACES = 8
 """Number of places around a thing, at each distance."""
-_PLACE_COSTS = np.repeat(_GAP_COST, _PLACES) + _ORDER_COST * np.tile(np.arange(_PLACES), len(_GAPS))
-_HALO, _LEADER = 2.6, 0.9
+_PLACE_COSTS = tuple(cost + _ORDER_COST * order for cost in _GAP_COST for order in range(_PLACES))
+_LEADER = 0.9
 _ASCENT, _DESCENT = 0.76, 0.22
 """Height of a text above and below its line, as shares of its size."""
 _TAKEN = ("goal", "contact", "badge", "head", "ring")
@@ -93,55 +94,63 @@ def place_names(
             box_before = before.get(mark)
             known[mark] = _box(mark, layout) if box_before is None else box_before
     blocks = [box for mark, box in known.items() if mark.part in _TAKEN or _is_moving(mark)]
-    taken = np.array(blocks + [_text_box(one, layout, sizes) for one in fixed]).reshape(-1, 4)
-    walls = np.array([box for m, box in known.items() if m.part == "body" and not _is_moving(m)]).reshape(-1, 4)
+    taken = blocks + [_text_box(one, layout, sizes) for one in fixed]
+    walls = [box for mark, box in known.items() if mark.part == "body" and not _is_moving(mark)]
     lines = [(cost, _points(marks, part, layout)) for part, cost in _LINE_COSTS]
     x0, x1, y0, y1 = layout.world
-    low, high = layout.places(np.array([(x0, y0), (x1, y1)]))
+    (left, bottom), (right, top) = layout.places(np.array([(x0, y0), (x1, y1)])).tolist()
+    inside = left + 1, bottom + 1, right - 1, top - 1
     leaders, labels, dropped = list[Mark](), list[Label](), 0
     size = layout.sizes.name
     for wish in wishes:
-        width = sizes.width(wish.text, size, bold=True)
-        places = _places(wish, layout, width, size)
-        free = np.all((places[:, :2] >= low + 1) & (places[:, 2:] <= high - 1), axis=1)
-        free &= ~_overlaps(places, taken).any(axis=1)
-        if not free.any():
+        found = _cheapest(
+            _places(wish, layout, sizes.width(wish.text, size, bold=True), size), inside, taken, walls, lines
+        )
+        if found is None:
             dropped += 1
             continue
-        cost = _PLACE_COSTS + _WALL_COST * _overlaps(places, walls).any(axis=1)
-        chosen = _cheapest(places, np.where(free, cost, np.inf), lines)
-        box = places[chosen]
-        taken = np.concatenate([taken, box[None]])
-        place = layout.at(float(box[0]), float(box[1]) + _DESCENT * size)
-        halo = (theme.paper, _HALO)
+        chosen, box = found
+        taken.append(box)
+        place = layout.at(box[0], box[1] + _DESCENT * size)
+        halo = (theme.paper, NAME["halo"])
         labels.append(
             label(wish.number, wish.part, place, wish.text, wish.color, size, zorder=_NAME_Z, bold=True, halo=halo)
         )
         if wish.leads and chosen >= _PLACES:
-            leaders.append(_leader(wish, box, layout))
+            leaders.append(_leader(wish, np.array(box), layout))
     return leaders, labels, dropped
 
 
-def _cheapest(places: Floats, cost: Floats, lines: Sequence[tuple[float, Floats]]) -> int:
-    """The place of least cost, with what it costs to lie over lines; dear places are not compared with lines."""
-    chosen, least = 0, np.inf
-    for number in np.argsort(cost, kind="stable").tolist():
-        if cost[number] >= least:
+def _cheapest(
+    places: Iterable[Bounds],
+    inside: Bounds,
+    taken: Sequence[Bounds],
+    walls: Sequence[Bounds],
+    lines: Sequence[tuple[float, Floats]],
+) -> tuple[int, Bounds] | None:
+    """Number and box of the free place of least cost; a place that cannot be the cheapest is not looked at."""
+    found: tuple[int, Bounds] | None = None
+    least = math.inf, math.inf
+    for number, (box, cost) in enumerate(zip(places, _PLACE_COSTS, strict=True)):
+        if cost >= least[0]:
             break
-        whole = float(cost[number])
-        for price, points in lines:
-            whole += price * _holds(places[number], points)
-        if whole < least:
-            chosen, least = number, whole
-    return chosen
+        a, b, c, d = box
+        if a < inside[0] or b < inside[1] or c > inside[2] or d > inside[3] or _meets(box, taken):
+            continue
+        cost += _WALL_COST * _meets(box, walls)
+        whole = cost
+        for price, points in lines if cost <= least[0] else ():
+            whole += price * _holds(box, points)
+        if (whole, cost) < least:
+            found, least = (number, box), (whole, cost)
+    return found
 
 
-def _places(wish: Wish, layout: Layout, width: float, size: float) -> Floats:
-    """(3 * 8, 4) boxes around a thing, the nearest first: above, below, right, left, then the corners [u]."""
-    [(x, y)] = layout.places(np.array([wish.at])).tolist()
+def _places(wish: Wish, layout: Layout, width: float, size: float) -> Iterator[Bounds]:
+    """3 * 8 boxes around a thing, the nearest first: above, below, right, left, then the corners [u]."""
+    x, y = layout.place(*wish.at)
     across, up = (length * layout.scale for length in wish.reach)
     height = (_ASCENT + _DESCENT) * size
-    boxes = []
     for gap in _GAPS:
         over, under = y + up + gap, y - up - gap - height
         right, left = x + across + gap, x - across - gap - width
@@ -150,8 +159,7 @@ def _places(wish: Wish, layout: Layout, width: float, size: float) -> Floats:
         corners = [(middle, over), (middle, under), (right, half), (left, half)]
         for side in (x + slant * across + gap * slant, x - slant * across - gap * slant - width):
             corners += [(side, y + slant * (up + gap)), (side, y - slant * (up + gap) - height)]
-        boxes += [(a, b, a + width, b + height) for a, b in corners]
-    return np.array(boxes)
+        yield from ((a, b, a + width, b + height) for a, b in corners)
 
 
 def _leader(wish: Wish, box: Floats, layout: Layout) -> Mark:
@@ -182,7 +190,7 @@ def _box(mark: Mark, layout: Layout) -> Bounds:
 
 def _text_box(one: Label, layout: Layout, sizes: TextSizes) -> tuple[float, float, float, float]:
     size = one.size * 96 / 72
-    [(x, y)] = layout.places(np.array([(one.x, one.y)])).tolist()
+    x, y = layout.place(one.x, one.y)
     width = sizes.width(one.text, size, bold=one.bold, italic=one.italic)
     return x, y - _DESCENT * size, x + width, y + _ASCENT * size
 
@@ -194,28 +202,26 @@ def _points(marks: Sequence[Mark], part: str, layout: Layout) -> Floats:
     ]
     if not lines or part != "plan":
         return layout.places(np.concatenate([np.empty((0, 2)), *lines]))
-    places = list[Floats]()
-    for points in map(layout.places, lines):
-        if len(points) == 2:
-            length = float(np.hypot(*(points[1] - points[0])))
-            places.append(
-                points[0] + np.linspace(0.0, 1.0, 2 + int(length / _SPREAD))[:, None] * (points[1] - points[0])
-            )
-            continue
+    straight = layout.places(np.array([points for points in lines if len(points) == 2]).reshape(-1, 2))
+    starts, ways = straight[::2], straight[1::2] - straight[::2]
+    pieces = (np.hypot(ways[:, 0], ways[:, 1]) / _SPREAD).astype(int) + 1
+    whose = np.repeat(np.arange(len(pieces)), pieces + 1)
+    shares = (np.arange(len(whose)) - (np.cumsum(pieces + 1) - pieces - 1)[whose]) / pieces[whose]
+    places = [starts[whose] + shares[:, None] * ways[whose]]
+    for points in (layout.places(points) for points in lines if len(points) != 2):
         along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])  # corners are far apart
         at = np.linspace(0.0, along[-1], 2 + int(along[-1] / _SPREAD))
         places.append(np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1))
     return np.concatenate(places)
 
 
-def _holds(box: Floats, points: Floats) -> bool:
+def _holds(box: Bounds, points: Floats) -> bool:
     """Whether a box contains one of the points."""
     inside = (points > box[:2]) & (points < box[2:])
     return bool((inside[:, 0] & inside[:, 1]).any())
 
 
-def _overlaps(some: Floats, others: Floats) -> NDArray[np.bool_]:
-    left, bottom, right, top = some.T[:, :, None]
-    a, b, c, d = others.T[:, None]
-    overlapping: NDArray[np.bool_] = (right > a) & (left < c) & (top > b) & (bottom < d)
-    return overlapping
+def _meets(box: Bounds, others: Sequence[Bounds]) -> bool:
+    """Whether a box overlaps another one."""
+    left, bottom, right, top = box
+    return any(right > a and left < c and top > b and bottom < d for a, b, c, d in others)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from irsim.graphics.scene.glyphs import BADGE_LINE, BADGES, RIM_U, RINGS, STAR
+from irsim.graphics.scene.glyphs import BADGE_LINE, BADGES, RIM_U, RINGS, STAR, STARS
 from irsim.graphics.scene.scene import Circle, Line, Mark, Region
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern.frame import FRAME, stroke
@@ -15,15 +15,11 @@ from irsim.rendering.modern.layout import Layout
 from irsim.rendering.modern.things import Thing
 from irsim.simulation.events import Event
 
-__all__ = ["MAX_TIMED", "star_marks", "state_marks", "touches"]
+__all__ = ["star_marks", "state_marks", "touches"]
 
 _STAR_Z, _BADGE_Z, _RING_Z = 5.5, 6.0, 4.33
-MAX_TIMED = 8
-"""Number of contacts up to which each has its time."""
 _MAX_STARS = 500
 """Number of the latest contacts that are drawn."""
-_SMALL_STAR, _CROWDED_STAR = 5.0, 4.0
-_MANY_RING = 1.2
 _DIAGONAL = math.sqrt(0.5)
 _NEAR_STAR = 2.0
 """Distance to a star, in radii of the robot, below which the robot does not have a badge, too."""
@@ -42,8 +38,8 @@ def star_marks(
 ) -> list[Mark]:
     """Stars where robots touched something, and small pale ones where others touched each other."""
     marks = list[Mark]()
-    large = _CROWDED_STAR if level > 1 else layout.sizes.star
-    for events, color, size in ((others, theme.muted, min(_SMALL_STAR, large)), (own, theme.danger, large)):
+    large = STARS["crowded"] if level > 1 else layout.sizes.star
+    for events, color, size in ((others, theme.muted, min(STARS["others"], large)), (own, theme.danger, large)):
         for event in events[-_MAX_STARS:]:
             star = Region([np.array(STAR) * layout.metres(size) + (event.x, event.y)])
             marks.append(Mark(FRAME, "contact", star, color, stroke(theme.paper, RIM_U), 1.0, _STAR_Z))
@@ -63,7 +59,7 @@ def state_marks(thing: Thing, layout: Layout, theme: Theme, *, level: int) -> li
     color = colors[thing.state]
     if level > 1:
         ring = Circle(x, y, rim)
-        return [*marks, Mark(number, "ring", ring, None, stroke(color, _MANY_RING), 1.0, _RING_Z)]
+        return [*marks, Mark(number, "ring", ring, None, stroke(color, RINGS["crowded"]["width"]), 1.0, _RING_Z)]
     if thing.state == "collided":
         ring = Circle(x, y, rim + layout.metres(RINGS["collided"]["gap"]))
         marks.append(Mark(number, "ring", ring, None, stroke(color, RINGS["collided"]["width"]), 1.0, _RING_Z))

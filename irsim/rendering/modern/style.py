@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import compress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irsim.graphics.figure.measuring import TextSizes
 from irsim.graphics.scene.bodies import bounds
+from irsim.graphics.scene.glyphs import CROWD
 from irsim.graphics.scene.scene import Bounds, Circle, GridImage, Label, Mark, Scene, Stroke
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern import bodies, frame, ground, heading, names, sensing, signs, ways
@@ -92,6 +94,8 @@ class ModernStyle:
         self._parts: dict[tuple[Any, ...], Parts] = {}
         self._head: tuple[Any, Parts] | None = None
         self._boxes: dict[Mark, Bounds] = {}
+        self._goals: dict[int, tuple[Any, list[Mark]]] = {}
+        self._stars: tuple[Any, list[Mark]] = (None, [])
         self._name = name_of(simulation)
 
     def draw(self, scene: Scene, builder: SceneBuilder, layout: Layout, request: Request) -> Scene:
@@ -133,7 +137,10 @@ class ModernStyle:
         own, others = signs.touches(
             events, {thing.view.name for thing in things if thing.kind == "robot"}, passable_names(simulation)
         )
-        marks += signs.star_marks(own, others, layout, theme, level=crowd.level)
+        touched = crowd.level, [(one.x, one.y) for one in others], [(one.x, one.y) for one in own]
+        if self._stars[0] != touched:
+            self._stars = touched, signs.star_marks(own, others, layout, theme, level=crowd.level)
+        marks += self._stars[1]
         for thing in things:
             if thing.kind == "robot" and thing.shown:
                 marks += signs.state_marks(thing, layout, theme, level=crowd.level)
@@ -178,6 +185,8 @@ class ModernStyle:
         self._still.clear()
         self._parts.clear()
         self._boxes.clear()
+        self._goals.clear()
+        self._stars = (None, [])
         self._head = None
         self._maps.clear()
         self._fog = (None, [])
@@ -259,7 +268,12 @@ class ModernStyle:
             goals = ways.remaining_goals(thing, simulation)
             if goals:
                 level = 0 if thing.picked else crowd.level
-                marks += ways.goal_marks(thing, goals, layout, theme, level=level)
+                key = thing.shades, level, *(goal.tobytes() for goal in goals)
+                known = self._goals.get(thing.number)
+                if known is None or known[0] != key:
+                    made = ways.goal_marks(thing, goals, layout, theme, level=level)
+                    known = self._goals[thing.number] = key, made
+                marks += known[1]
                 if robot and request.plans and level == 0:
                     marks += ways.plan_marks(thing, ways.path_ahead(thing, goals, simulation), layout)
         return any_beads
@@ -306,14 +320,14 @@ def _wishes(
 ) -> list[names.Wish]:
     """Names and times of contacts, the most important first."""
     star = layout.metres(layout.sizes.star)
-    first = [thing for thing in things if thing.picked or thing.state == "collided"]
-    rest = [thing for thing in things if thing not in first]
-    wishes = [_name_wish(thing) for thing in first if _has_name(thing, crowd)]
-    if crowd.level < 2 and len(own) <= signs.MAX_TIMED:
+    named = [thing for thing in things if _has_name(thing, crowd)]
+    first = [thing.picked or thing.state == "collided" for thing in named]
+    wishes = [_name_wish(thing) for thing in compress(named, first)]
+    if crowd.level < 2 and len(own) <= CROWD["timed"]:
         for number, event in enumerate(own):
             place, text = (float(event.x), float(event.y)), f"{event.time:.1f} s"
             wishes.append(names.Wish(frame.FRAME - number, "moment", text, theme.danger, place, (star, star), False))
-    return wishes + [_name_wish(thing) for thing in rest if _has_name(thing, crowd)]
+    return wishes + [_name_wish(thing) for thing, early in zip(named, first, strict=True) if not early]
 
 
 def _has_name(thing: Thing, crowd: Crowd) -> bool:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from irsim.graphics.scene.bodies import Body
+from irsim.graphics.scene.glyphs import CROWD, SMALLER
 from irsim.graphics.scene.scene import Mark, Scene
 from irsim.graphics.scene.theme import Kind, Shades, Theme
 from irsim.objects.drawing.kinds import kind_of
@@ -21,17 +22,11 @@ if TYPE_CHECKING:
     from irsim.rendering.modern.layout import Layout
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["FEW_ROBOTS", "MANY_ROBOTS", "Crowd", "Thing", "read_things"]
+__all__ = ["Crowd", "Thing", "read_things"]
 
-FEW_ROBOTS = 12
-"""Most robots with which everything is drawn."""
-MANY_ROBOTS = 50
-"""Of more robots only bodies and short trails are drawn."""
 MANY_PEOPLE = 50
 _DISTINCT = 6
 """Number of colours that all people can tell apart."""
-_SMALLER = (1.0, 0.85, 0.62)
-"""Factor of the least radius of robots: of few, of some and of many."""
 _CROWDED_PERSON, _CROWDED_SMALL_PERSON = 4.2, 3.8
 """Least radius of a person where there are many, in the normal layout and in others [u]."""
 State = Literal["", "arrived", "collided", "stopped"]
@@ -113,13 +108,13 @@ class Crowd:
     @property
     def level(self) -> int:
         """0 for few robots, 1 for some, 2 for many."""
-        return (self.robots > FEW_ROBOTS) + (self.robots > MANY_ROBOTS)
+        return (self.robots > CROWD["few"]) + (self.robots > CROWD["many"])
 
     def least_radius(self, kind: Kind, layout: Layout) -> float:
         """Least radius of a robot or a person [m]."""
         sizes = layout.sizes
         if kind == "robot":
-            return layout.metres(sizes.robot * _SMALLER[self.level])
+            return layout.metres(sizes.robot * SMALLER[self.level])
         crowded = _CROWDED_PERSON if sizes.kind == "normal" else _CROWDED_SMALL_PERSON
         return layout.metres(crowded if self.people > MANY_PEOPLE else sizes.person)
 

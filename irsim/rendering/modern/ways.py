@@ -44,9 +44,9 @@ _STEP = 1.5
 """Least distance between points of a trail [u]."""
 _DASHES = (0, (3.6, 2.6))
 _PLAN_ALPHA = 0.85
-_OPEN_DOT = 6.0
-"""Diameter of a goal where there are more than a few robots [u]."""
 _WAYPOINT, _WAYPOINT_EDGE = 5.0, 1.3
+_SAME_M, _SAME_SHARE = 1e-8, 1e-5
+"""Coordinates of goals that differ by no more than this, or than this share, are the same."""
 
 
 def trail_marks(
@@ -77,22 +77,22 @@ def trail_marks(
     points, color = trajectory_points(thing.body, states), thing.shades.edge
     widths, zorder = (layout.sizes.trail, _TRAIL_Z) if robot else ((2.0, 1.2), _PERSON_TRAIL_Z)
     marks, last = list[Mark](), len(points) - 1
-    kept = _spread(points, layout.metres(_STEP)) if robot else None
-    for young, old, tint in _tints(color, theme.paper, robot, widths, robot and level > 0):
-        end = last - round(young / period)
-        begin = 0 if math.isinf(old) else max(0, last - round(old / period))
-        if end <= begin:
-            continue
-        if kept is None:
-            line = Line(points[begin : end + 1])
-        else:
-            first_inside, after = kept.searchsorted((begin + 1, end))
-            line = Line(points[np.array([begin, *kept[first_inside:after], end])])
-        marks.append(Mark(thing.number, "trajectory", line, None, tint, 1.0, zorder))
+    tints = _tints(color, theme.paper, robot, widths, robot and level > 0)
+    ends = [max(0, last - round(young / period)) for young, _, _ in tints]
+    begins = [0 if math.isinf(old) else max(0, last - round(old / period)) for _, old, _ in tints]
+    path = points
+    if robot:
+        kept = _spread(points, layout.metres(_STEP))
+        kept[begins] = kept[ends] = True
+        path, places = points[kept], np.cumsum(kept) - 1
+        begins, ends = places[begins].tolist(), places[ends].tolist()
+    for begin, end, (_, _, tint) in zip(begins, ends, tints, strict=True):
+        if end > begin:
+            marks.append(Mark(thing.number, "trajectory", Line(path[begin : end + 1]), None, tint, 1.0, zorder))
     every = round(_BEAD_S / period)
     if beads and every and first == 0 and last > every:
-        places = Spots(np.ascontiguousarray(points[every:last:every]), layout.metres(_BEAD / 2))
-        marks.append(Mark(thing.number, "bead", places, theme.paper, stroke(color, _BEAD_EDGE), 1.0, _BEAD_Z))
+        beads_at = Spots(np.ascontiguousarray(points[every:last:every]), layout.metres(_BEAD / 2))
+        marks.append(Mark(thing.number, "bead", beads_at, theme.paper, stroke(color, _BEAD_EDGE), 1.0, _BEAD_Z))
     return marks
 
 
@@ -112,11 +112,15 @@ def _tints(
     return tints
 
 
-def _spread(points: Floats, least: float) -> NDArray[np.int64]:
-    """Indices of points of a trail of which no two in a row are closer than can be seen; counted from its start."""
+def _spread(points: Floats, least: float) -> NDArray[np.bool_]:
+    """Which points of a trail are farther from the one before than can be seen, counted from its start."""
     steps = points[1:] - points[:-1]
-    bins = np.cumsum(np.hypot(steps[:, 0], steps[:, 1])) // least
-    return np.flatnonzero(np.diff(bins, prepend=0.0)) + 1
+    bins = np.zeros(len(points))
+    np.cumsum(np.hypot(steps[:, 0], steps[:, 1]), out=bins[1:])
+    bins //= least
+    kept = np.zeros(len(points), dtype=bool)
+    np.not_equal(bins[1:], bins[:-1], out=kept[1:])
+    return kept
 
 
 def remaining_goals(thing: Thing, simulation: Simulation) -> list[Floats]:
@@ -129,9 +133,14 @@ def remaining_goals(thing: Thing, simulation: Simulation) -> list[Floats]:
         return []
     if len(goals) == 1:
         return [np.asarray(present, dtype=np.float64)]
-    index = next((i for i, goal in enumerate(goals) if np.allclose(goal[:2], present[:2])), len(goals))
+    x, y = present[:2].tolist()
+    index = next((i for i, goal in enumerate(goals) if _is_close(goal[0], x) and _is_close(goal[1], y)), len(goals))
     later = [np.array([*goal[:3], math.nan][:3], dtype=np.float64) for goal in goals[index + 1 :]]
     return [np.asarray(present, dtype=np.float64), *later]
+
+
+def _is_close(one: float, other: float) -> bool:
+    return abs(one - other) <= _SAME_M + _SAME_SHARE * abs(other)
 
 
 def path_ahead(thing: Thing, goals: list[Floats], simulation: Simulation) -> Floats:
@@ -172,7 +181,7 @@ def goal_marks(thing: Thing, goals: list[Floats], layout: Layout, theme: Theme, 
     color = thing.shades.edge
     x, y, heading = (float(value) for value in goals[-1])
     if level:
-        spot = Circle(x, y, layout.metres(_OPEN_DOT / 2))
+        spot = Circle(x, y, layout.metres(GOAL["open"] / 2))
         return [Mark(number, "goal", spot, theme.paper, stroke(color, layout.sizes.goal[1]), 1.0, GOAL_Z)]
     radius = max(thing.half_width, layout.metres(layout.sizes.goal[0]))
     disc = Circle(x, y, radius)

@@ -5,13 +5,10 @@ import { GLYPHS, shade } from "./colors.js";
 import { ARRIVED, COLLIDED, courseAt, flagsAt, isBetweenSteps, poseAt, STOPPED, waits } from "./run.js";
 import { ofRobot } from "./words.js";
 
-const FEW_ROBOTS = 12, MANY_ROBOTS = 50; // robots up to which everything, and most things, are drawn
-const SMALLER = [1, 0.85, 0.62]; // factors of the least radius
-const TIMED = 8; // contacts up to which each has its time
 const DIAGONAL = Math.SQRT1_2;
 
 /** 0 for few robots, 1 for some, 2 for many. */
-export const crowding = ({ robots }) => (robots.length > FEW_ROBOTS) + (robots.length > MANY_ROBOTS);
+export const crowding = ({ robots }) => (robots.length > GLYPHS.crowd.few) + (robots.length > GLYPHS.crowd.many);
 
 const boxes = new WeakMap();
 
@@ -31,7 +28,7 @@ function boxOf(run, object) {
 /** Radius [m] that an object has in the view, which may be larger than its own so that it is seen. */
 function radiusOf(run, object, camera) {
   const { robot, person } = GLYPHS.sizes;
-  const least = object.kind === "robot" ? robot * SMALLER[crowding(run)] : object.kind === "person" ? person : 3;
+  const least = object.kind === "robot" ? robot * GLYPHS.smaller[crowding(run)] : object.kind === "person" ? person : 3;
   return Math.max(object.radius, least / camera.scale);
 }
 
@@ -123,7 +120,7 @@ function drawOutline(context, run, object, pose, course, radius, at, camera, col
     context.stroke(path);
   };
   if (line && !round) {
-    rim(fill, 2);
+    rim(fill, edges.line);
     return;
   }
   if (robot) rim(colors.paper, 2 * (round ? edges.round_halo : edges.other_halo) + edges.robot);
@@ -160,7 +157,7 @@ export function drawState(context, run, object, at, picked, camera, colors, rati
   if (!state) return;
   const color = { arrived: colors.good, collided: colors.danger, stopped: colors.warn }[state];
   if (crowding(run) > 1) {
-    ring({ gap: 0, width: 1.2 }, color);
+    ring(rings.crowded, color);
     return;
   }
   const r = GLYPHS.sizes.badge * u, cx = x + DIAGONAL * rim, cy = y + DIAGONAL * rim;
@@ -178,7 +175,7 @@ export function drawState(context, run, object, at, picked, camera, colors, rati
 /** A goal: a ring with a dot; where there are many robots, an open dot. */
 export function drawGoal(context, run, object, goal, picked, camera, colors, ratio) {
   const color = shade(colors, object, "edge"), [least, width] = GLYPHS.sizes.goal, box = boxOf(run, object);
-  const open = crowding(run) > 0 && !picked, radius = open ? 3 / camera.scale : Math.max(Math.min(box.length, box.width), least / camera.scale);
+  const open = crowding(run) > 0 && !picked, radius = open ? GLYPHS.goal.open / 2 / camera.scale : Math.max(Math.min(box.length, box.width), least / camera.scale);
   inMetres(context, camera, ratio);
   disc(context, goal.x, goal.y, radius);
   context.fillStyle = open ? colors.paper : color;
@@ -194,22 +191,22 @@ export function drawGoal(context, run, object, goal, picked, camera, colors, rat
 
 /** Stars where robots have touched something so far, with their times while there are few; small ones of others. */
 export function drawContacts(context, run, at, camera, colors, ratio) {
-  const level = crowding(run), large = level > 1 ? 4 : GLYPHS.sizes.star;
+  const level = crowding(run), large = level > 1 ? GLYPHS.stars.crowded : GLYPHS.sizes.star;
   const so = run.events.filter((event) => event.row <= at + 1e-6 && (event.kind === "collision" || isBetweenSteps(event)));
   const own = so.filter((event) => ofRobot(run, event));
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.lineJoin = "round";
   for (const event of [...so.filter((event) => !own.includes(event)), ...own]) {
     const [x, y] = toPixels(camera, event.x, event.y), robot = own.includes(event);
-    polygon(context, GLYPHS.star, robot ? large : Math.min(5, large), x, y);
+    polygon(context, GLYPHS.star, robot ? large : Math.min(GLYPHS.stars.others, large), x, y);
     context.closePath();
     context.fillStyle = robot ? colors.danger : colors.muted;
     context.strokeStyle = colors.paper;
     context.lineWidth = 2 * GLYPHS.rim;
     context.stroke();
     context.fill();
-    if (!robot || level > 1 || own.length > TIMED) continue;
-    write(context, `${event.time.toFixed(1)} s`, x, y + large + 4, colors.danger, colors, "top");
+    if (!robot || level > 1 || own.length > GLYPHS.crowd.timed) continue;
+    write(context, `${event.time.toFixed(1)} s`, x, y + large + GLYPHS.name.gap, colors.danger, colors, "top");
   }
 }
 
@@ -219,7 +216,7 @@ export function write(context, text, x, y, color, colors, baseline = "bottom") {
   context.textAlign = "center";
   context.textBaseline = baseline;
   context.lineJoin = "round";
-  context.lineWidth = 2.6;
+  context.lineWidth = GLYPHS.name.halo;
   context.strokeStyle = colors.paper;
   context.strokeText(text, x, y);
   context.fillStyle = color;
@@ -228,4 +225,4 @@ export function write(context, text, x, y, color, colors, baseline = "bottom") {
 }
 
 /** How far above the middle of an object its name stands [px]. */
-export const nameLift = (run, object, camera) => radiusOf(run, object, camera) * camera.scale + 4;
+export const nameLift = (run, object, camera) => radiusOf(run, object, camera) * camera.scale + GLYPHS.name.gap;
