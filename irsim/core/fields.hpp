@@ -1,9 +1,9 @@
-// How options structs list their fields: for the bindings, comparisons and the test against the Python models.
+// How options structs list their fields: for the bindings, comparisons and the test against the Python models. A struct
+// has `fields(visit)`, which calls `visit` with all of them; as a template it costs nothing where it is not used.
 #pragma once
 
 #include <array>
 #include <cstddef>
-#include <tuple>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -51,7 +51,7 @@ constexpr Choices<Owner, Enum, sizeof...(Words)> choices(const char* name, std::
 /// Whether two options structs are equal in every field.
 template <class Options>
 bool same(const Options& a, const Options& b) {
-  return std::apply([&](const auto&... f) { return ((a.*(f.member) == b.*(f.member)) && ...); }, Options::fields());
+  return Options::fields([&](const auto&... f) { return ((a.*(f.member) == b.*(f.member)) && ...); });
 }
 
 /// Call `call` with the options that a variant of features holds; without options, do nothing.

@@ -29,16 +29,15 @@ struct AvocadoOptions : OrcaSettings {
   double noise;                       // eta: largest error of an observed velocity, without attention [m/s]
   std::optional<bool> keep_gap;       // whether a step takes only a share of a gap; unset: for robots after a tie
 
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = AvocadoOptions;
-    return std::tuple_cat(
-        shared_fields(),
-        std::make_tuple(
-            field("safe_radius", &O::safe_radius), field("forgetting", &O::forgetting),
-            field("own_weight", &O::own_weight), field("evidence_weight", &O::evidence_weight),
-            field("evidence_gain", &O::evidence_gain), choice("evidence", &O::evidence, "neutral", "authors"),
-            field("memory", &O::memory), field("bias", &O::bias), field("attention_time", &O::attention_time),
-            field("attention_step", &O::attention_step), field("noise", &O::noise), field("keep_gap", &O::keep_gap)));
+    return shared_fields(
+        visit, field("safe_radius", &O::safe_radius), field("forgetting", &O::forgetting),
+        field("own_weight", &O::own_weight), field("evidence_weight", &O::evidence_weight),
+        field("evidence_gain", &O::evidence_gain), choice("evidence", &O::evidence, "neutral", "authors"),
+        field("memory", &O::memory), field("bias", &O::bias), field("attention_time", &O::attention_time),
+        field("attention_step", &O::attention_step), field("noise", &O::noise), field("keep_gap", &O::keep_gap));
   }
 };
 

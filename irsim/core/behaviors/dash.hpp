@@ -9,7 +9,10 @@ namespace irsim {
 
 struct DashOptions {
   double angle_tolerance;  // heading errors smaller than this are not corrected [rad]
-  static constexpr auto fields() { return std::make_tuple(field("angle_tolerance", &DashOptions::angle_tolerance)); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("angle_tolerance", &DashOptions::angle_tolerance));
+  }
 };
 
 /// The facts about one object that the laws need.

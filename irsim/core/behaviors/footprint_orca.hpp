@@ -16,12 +16,13 @@ struct FootprintOrcaOptions {
   std::optional<double> maxSpeed;  // [m/s]; none: the limit of the object
   bool backward;                   // whether drives that can do so also drive backward
 
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = FootprintOrcaOptions;
-    return std::make_tuple(field("neighborDist", &O::neighborDist), field("maxNeighbors", &O::maxNeighbors),
-                           field("timeHorizon", &O::timeHorizon), field("timeHorizonObst", &O::timeHorizonObst),
-                           field("safe_distance", &O::safe_distance), field("maxSpeed", &O::maxSpeed),
-                           field("backward", &O::backward));
+    return visit(field("neighborDist", &O::neighborDist), field("maxNeighbors", &O::maxNeighbors),
+                 field("timeHorizon", &O::timeHorizon), field("timeHorizonObst", &O::timeHorizonObst),
+                 field("safe_distance", &O::safe_distance), field("maxSpeed", &O::maxSpeed),
+                 field("backward", &O::backward));
   }
 };
 

@@ -11,9 +11,10 @@ namespace irsim {
 struct OrcaOptions : OrcaSettings {
   double safe_radius;  // margin added to the radius of the object [m]
 
-  static constexpr auto fields() {
-    return std::tuple_cat(shared_fields(), std::make_tuple(field("safe_radius", &OrcaOptions::safe_radius),
-                                                           field("responsibility", &OrcaSettings::responsibility)));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return shared_fields(visit, field("safe_radius", &OrcaOptions::safe_radius),
+                         field("responsibility", &OrcaSettings::responsibility));
   }
 };
 

@@ -16,10 +16,11 @@ struct ReplayOptions {
   std::vector<std::vector<double>> poses;  // x, y [m] and perhaps heading [rad], one for each time
   Interpolation interpolation;
   bool vanish;  // whether an obstacle is not in the world before the first and after the last time
-  static constexpr auto fields() {
-    return std::make_tuple(field("times", &ReplayOptions::times), field("poses", &ReplayOptions::poses),
-                           choice("interpolation", &ReplayOptions::interpolation, "linear", "cubic"),
-                           field("vanish", &ReplayOptions::vanish));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("times", &ReplayOptions::times), field("poses", &ReplayOptions::poses),
+                 choice("interpolation", &ReplayOptions::interpolation, "linear", "cubic"),
+                 field("vanish", &ReplayOptions::vanish));
   }
 };
 

@@ -26,12 +26,13 @@ struct RvoOptions {
   RvoTurning turning;
   std::optional<bool> keep_gap;  // whether a step takes only a share of a gap; unset: for robots
 
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using R = RvoOptions;
-    return std::make_tuple(field("vxmax", &R::vxmax), field("vymax", &R::vymax), field("acce", &R::acce),
-                           field("factor", &R::factor), choice("mode", &R::mode, "rvo", "hrvo", "vo"),
-                           field("neighbor_threshold", &R::neighbor_threshold), field("sidestep", &R::sidestep),
-                           choice("turning", &R::turning, "limit", "fixed"), field("keep_gap", &R::keep_gap));
+    return visit(field("vxmax", &R::vxmax), field("vymax", &R::vymax), field("acce", &R::acce),
+                 field("factor", &R::factor), choice("mode", &R::mode, "rvo", "hrvo", "vo"),
+                 field("neighbor_threshold", &R::neighbor_threshold), field("sidestep", &R::sidestep),
+                 choice("turning", &R::turning, "limit", "fixed"), field("keep_gap", &R::keep_gap));
   }
 };
 

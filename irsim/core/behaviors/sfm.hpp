@@ -29,20 +29,21 @@ struct SfmOptions {
   double force_factor_gaze;
   double gaze_vision_angle;  // [degrees]
 
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using S = SfmOptions;
-    return std::make_tuple(
-        field("vmax", &S::vmax), field("neighbor_threshold", &S::neighbor_threshold),
-        field("relaxation_time", &S::relaxation_time), field("force_factor_desired", &S::force_factor_desired),
-        field("force_factor_social", &S::force_factor_social),
-        field("force_factor_obstacle", &S::force_factor_obstacle), field("sigma_obstacle", &S::sigma_obstacle),
-        field("lambda_importance", &S::lambda_importance), field("gamma", &S::gamma), field("n_angular", &S::n_angular),
-        field("n_velocity", &S::n_velocity), field("safety_radius", &S::safety_radius), field("sidestep", &S::sidestep),
-        field("keep_gap", &S::keep_gap), field("social_groups", &S::social_groups),
-        field("force_factor_coherence", &S::force_factor_coherence),
-        field("force_factor_group_repulsion", &S::force_factor_group_repulsion),
-        field("group_repulsion_threshold", &S::group_repulsion_threshold),
-        field("force_factor_gaze", &S::force_factor_gaze), field("gaze_vision_angle", &S::gaze_vision_angle));
+    return visit(field("vmax", &S::vmax), field("neighbor_threshold", &S::neighbor_threshold),
+                 field("relaxation_time", &S::relaxation_time), field("force_factor_desired", &S::force_factor_desired),
+                 field("force_factor_social", &S::force_factor_social),
+                 field("force_factor_obstacle", &S::force_factor_obstacle), field("sigma_obstacle", &S::sigma_obstacle),
+                 field("lambda_importance", &S::lambda_importance), field("gamma", &S::gamma),
+                 field("n_angular", &S::n_angular), field("n_velocity", &S::n_velocity),
+                 field("safety_radius", &S::safety_radius), field("sidestep", &S::sidestep),
+                 field("keep_gap", &S::keep_gap), field("social_groups", &S::social_groups),
+                 field("force_factor_coherence", &S::force_factor_coherence),
+                 field("force_factor_group_repulsion", &S::force_factor_group_repulsion),
+                 field("group_repulsion_threshold", &S::group_repulsion_threshold),
+                 field("force_factor_gaze", &S::force_factor_gaze), field("gaze_vision_angle", &S::gaze_vision_angle));
   }
 };
 

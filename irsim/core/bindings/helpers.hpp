@@ -15,6 +15,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "fields.hpp"
 
@@ -79,51 +80,51 @@ nb::object show_field(const Target& owner, const Choices<Owner, Enum, N>& field)
   return words;
 }
 
-/// Fill the fields of `target` from keyword arguments, which must name all fields and nothing else.
+/// Set the field at an index of the list.
 template <class T>
-void read_fields(T& target, const nb::kwargs& given) {
-  std::size_t used = 0;
-  std::apply(
-      [&](const auto&... field) {
-        [[maybe_unused]] const auto one = [&](const auto& f) {
-          if (!given.contains(f.name)) throw nb::type_error((std::string("missing argument: ") + f.name).c_str());
-          try {
-            read_field(target, f, given[f.name]);
-          } catch (const nb::cast_error&) {
-            throw nb::type_error((std::string("argument of the wrong type: ") + f.name).c_str());
-          }
-          ++used;
-        };
-        (one(field), ...);
-      },
-      T::fields());
-  if (used == given.size()) return;
-  for (const auto item : given) {
-    const auto name = nb::cast<std::string>(item.first);
-    const bool known = std::apply([&](const auto&... field) { return ((name == field.name) || ...); }, T::fields());
-    if (!known) throw nb::type_error(("unexpected argument: " + name).c_str());
-  }
+void read_at(T& target, std::size_t index, nb::handle value) {
+  T::fields([&](const auto&... field) {
+    [[maybe_unused]] std::size_t at = 0;
+    ((at++ == index ? read_field(target, field, value) : void()), ...);
+  });
 }
 
-/// Bind a struct that has `fields()`, with a keyword constructor, the tuple `fields` and read-only attributes.
+/// The field at an index of the list.
+template <class T>
+nb::object show_at(const T& source, std::size_t index) {
+  nb::object shown;
+  T::fields([&](const auto&... field) {
+    [[maybe_unused]] std::size_t at = 0;
+    ((at++ == index ? void(shown = show_field(source, field)) : void()), ...);
+  });
+  return shown;
+}
+
+/// Raise TypeError unless the keyword arguments name each of `names` and nothing else.
+void check_names(const nb::kwargs& given, const std::vector<const char*>& names);
+
+/// Bind a struct that has `fields`, with a keyword constructor, the tuple `fields` and read-only attributes.
 template <class T>
 void bind_fields(nb::module_& m, const char* name) {
+  const auto names =
+      T::fields([](const auto&... field) { return std::vector<const char*>{static_cast<const char*>(field.name)...}; });
   nb::class_<T> bound(m, name);
-  bound.def("__init__", [](T* self, nb::kwargs given) {
+  // One type of getter per struct: what nanobind compiles for each type costs more than the search for the index.
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    bound.def_prop_ro(names[i], [i](const T& self) { return show_at(self, i); });
+  }
+  bound.attr("fields") = nb::tuple(nb::cast(names));
+  bound.def("__init__", [names](T* self, nb::kwargs given) {
     new (self) T();
-    read_fields(*self, given);
+    check_names(given, names);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      try {
+        read_at(*self, i, given[names[i]]);
+      } catch (const nb::cast_error&) {
+        throw nb::type_error((std::string("argument of the wrong type: ") + names[i]).c_str());
+      }
+    }
   });
-  nb::list names;
-  std::apply(
-      [&](const auto&... field) {
-        [[maybe_unused]] const auto one = [&](const auto& f) {
-          names.append(f.name);
-          bound.def_prop_ro(f.name, [f](const T& self) { return show_field(self, f); });
-        };
-        (one(field), ...);
-      },
-      T::fields());
-  bound.attr("fields") = nb::tuple(names);
 }
 
 void bind_features(nb::module_& m);

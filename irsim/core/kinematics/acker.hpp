@@ -14,10 +14,11 @@ struct AckerOptions {
   Steering mode;     // steer: the second control is the steering angle; angular: its rate
   double wheelbase;  // [m]
   double psi_max;    // largest steering angle [rad], may be infinite
-  static constexpr auto fields() {
-    return std::make_tuple(field("noise", &AckerOptions::noise), field("alpha", &AckerOptions::alpha),
-                           choice("mode", &AckerOptions::mode, "steer", "angular"),
-                           field("wheelbase", &AckerOptions::wheelbase), field("psi_max", &AckerOptions::psi_max));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("noise", &AckerOptions::noise), field("alpha", &AckerOptions::alpha),
+                 choice("mode", &AckerOptions::mode, "steer", "angular"), field("wheelbase", &AckerOptions::wheelbase),
+                 field("psi_max", &AckerOptions::psi_max));
   }
 };
 

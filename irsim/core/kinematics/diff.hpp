@@ -9,8 +9,9 @@ namespace irsim {
 struct DiffOptions {
   bool noise;
   std::array<double, 4> alpha;
-  static constexpr auto fields() {
-    return std::make_tuple(field("noise", &DiffOptions::noise), field("alpha", &DiffOptions::alpha));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("noise", &DiffOptions::noise), field("alpha", &DiffOptions::alpha));
   }
 };
 

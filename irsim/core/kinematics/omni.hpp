@@ -9,8 +9,9 @@ namespace irsim {
 struct OmniOptions {
   bool noise;
   std::array<double, 2> alpha;
-  static constexpr auto fields() {
-    return std::make_tuple(field("noise", &OmniOptions::noise), field("alpha", &OmniOptions::alpha));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("noise", &OmniOptions::noise), field("alpha", &OmniOptions::alpha));
   }
 };
 

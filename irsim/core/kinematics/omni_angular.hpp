@@ -9,8 +9,9 @@ namespace irsim {
 struct OmniAngularOptions {
   bool noise;
   std::array<double, 3> alpha;
-  static constexpr auto fields() {
-    return std::make_tuple(field("noise", &OmniAngularOptions::noise), field("alpha", &OmniAngularOptions::alpha));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("noise", &OmniAngularOptions::noise), field("alpha", &OmniAngularOptions::alpha));
   }
 };
 

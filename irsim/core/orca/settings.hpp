@@ -19,13 +19,14 @@ struct OrcaSettings {
   // share of a change of velocity, without a `Reciprocity`; none: half for objects that give way, else all
   std::optional<double> responsibility;
 
-  /// The fields of every such behavior; `responsibility` is one of `orca` alone.
-  static constexpr auto shared_fields() {
+  /// The fields of every such behavior, then `more`; `responsibility` is one of `orca` alone.
+  template <class Visit, class... More>
+  static constexpr auto shared_fields(const Visit& visit, const More&... more) {
     using O = OrcaSettings;
-    return std::make_tuple(field("neighborDist", &O::neighborDist), field("maxNeighbors", &O::maxNeighbors),
-                           field("timeHorizon", &O::timeHorizon), field("timeHorizonObst", &O::timeHorizonObst),
-                           field("maxSpeed", &O::maxSpeed), field("approach_time", &O::approach_time),
-                           field("sidestep", &O::sidestep));
+    return visit(field("neighborDist", &O::neighborDist), field("maxNeighbors", &O::maxNeighbors),
+                 field("timeHorizon", &O::timeHorizon), field("timeHorizonObst", &O::timeHorizonObst),
+                 field("maxSpeed", &O::maxSpeed), field("approach_time", &O::approach_time),
+                 field("sidestep", &O::sidestep), more...);
   }
 };
 

@@ -14,12 +14,13 @@ struct GoalOptions {
   Frame frame;
   double distance_max, decay;  // [m]
   bool clip;
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = GoalOptions;
-    return std::make_tuple(choices("features", &O::features, "distance", "nearness", "cos", "sin", "x", "y",
-                                   "heading_cos", "heading_sin", "threshold", "present"),
-                           choice("frame", &O::frame, "own", "goal", "world"), field("distance_max", &O::distance_max),
-                           field("decay", &O::decay), field("clip", &O::clip));
+    return visit(choices("features", &O::features, "distance", "nearness", "cos", "sin", "x", "y", "heading_cos",
+                         "heading_sin", "threshold", "present"),
+                 choice("frame", &O::frame, "own", "goal", "world"), field("distance_max", &O::distance_max),
+                 field("decay", &O::decay), field("clip", &O::clip));
   }
 };
 

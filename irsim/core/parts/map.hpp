@@ -11,11 +11,11 @@ struct MapOptions {
   double size;  // length of a side [m]
   Frame frame;
   bool outside_occupied;
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = MapOptions;
-    return std::make_tuple(field("cells", &O::cells), field("size", &O::size),
-                           choice("frame", &O::frame, "own", "goal", "world"),
-                           field("outside_occupied", &O::outside_occupied));
+    return visit(field("cells", &O::cells), field("size", &O::size), choice("frame", &O::frame, "own", "goal", "world"),
+                 field("outside_occupied", &O::outside_occupied));
   }
 };
 

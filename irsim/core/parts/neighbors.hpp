@@ -41,16 +41,16 @@ struct NeighborsOptions {
   double radius_max;    // [m]
   double decay;         // [m]
   bool clip;
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = NeighborsOptions;
-    return std::make_tuple(choices("features", &O::features, "x", "y", "vx", "vy", "heading_cos", "heading_sin",
-                                   "radius", "radii", "distance", "gap", "extent", "own_extent", "extent_gap",
-                                   "nearness", "goal_distance", "arrived", "robot", "present"),
-                           field("count", &O::count), field("range", &O::range),
-                           field("nearest_last", &O::nearest_last), choice("frame", &O::frame, "own", "goal", "world"),
-                           field("relative_velocity", &O::relative_velocity), field("distance_max", &O::distance_max),
-                           field("speed_max", &O::speed_max), field("radius_max", &O::radius_max),
-                           field("decay", &O::decay), field("clip", &O::clip));
+    return visit(choices("features", &O::features, "x", "y", "vx", "vy", "heading_cos", "heading_sin", "radius",
+                         "radii", "distance", "gap", "extent", "own_extent", "extent_gap", "nearness", "goal_distance",
+                         "arrived", "robot", "present"),
+                 field("count", &O::count), field("range", &O::range), field("nearest_last", &O::nearest_last),
+                 choice("frame", &O::frame, "own", "goal", "world"), field("relative_velocity", &O::relative_velocity),
+                 field("distance_max", &O::distance_max), field("speed_max", &O::speed_max),
+                 field("radius_max", &O::radius_max), field("decay", &O::decay), field("clip", &O::clip));
   }
 };
 

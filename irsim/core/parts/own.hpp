@@ -32,14 +32,15 @@ struct OwnOptions {
   double steering_max;  // [rad]
   double limit_max;
   bool clip;
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = OwnOptions;
-    return std::make_tuple(choices("features", &O::features, "vx", "vy", "speed", "yaw_rate", "heading_cos",
-                                   "heading_sin", "radius", "steering", "arrived", "control", "low", "high"),
-                           choice("frame", &O::frame, "own", "goal", "world"), field("controls", &O::controls),
-                           field("speed_max", &O::speed_max), field("yaw_rate_max", &O::yaw_rate_max),
-                           field("radius_max", &O::radius_max), field("steering_max", &O::steering_max),
-                           field("limit_max", &O::limit_max), field("clip", &O::clip));
+    return visit(choices("features", &O::features, "vx", "vy", "speed", "yaw_rate", "heading_cos", "heading_sin",
+                         "radius", "steering", "arrived", "control", "low", "high"),
+                 choice("frame", &O::frame, "own", "goal", "world"), field("controls", &O::controls),
+                 field("speed_max", &O::speed_max), field("yaw_rate_max", &O::yaw_rate_max),
+                 field("radius_max", &O::radius_max), field("steering_max", &O::steering_max),
+                 field("limit_max", &O::limit_max), field("clip", &O::clip));
   }
 };
 

@@ -21,12 +21,13 @@ struct RvoConesOptions {
   Velocity velocity;  // whose collision is timed
   std::optional<int> decimals;
   bool zero_row;  // whether a robot without neighbors sees one member of zeros
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = RvoConesOptions;
-    return std::make_tuple(field("count", &O::count), field("nearest", &O::nearest), field("range", &O::range),
-                           field("margin", &O::margin), field("horizon", &O::horizon),
-                           choice("velocity", &O::velocity, "commanded", "present"), field("decimals", &O::decimals),
-                           field("zero_row", &O::zero_row));
+    return visit(field("count", &O::count), field("nearest", &O::nearest), field("range", &O::range),
+                 field("margin", &O::margin), field("horizon", &O::horizon),
+                 choice("velocity", &O::velocity, "commanded", "present"), field("decimals", &O::decimals),
+                 field("zero_row", &O::zero_row));
   }
 };
 

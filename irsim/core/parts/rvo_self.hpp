@@ -13,9 +13,10 @@ struct RvoSelfOptions {
   std::optional<double> speed;  // of the desired velocity; none: the upper limit of the first control [m/s]
   double margin;                // added to the robot's own radius [m]
   std::optional<int> decimals;
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = RvoSelfOptions;
-    return std::make_tuple(field("speed", &O::speed), field("margin", &O::margin), field("decimals", &O::decimals));
+    return visit(field("speed", &O::speed), field("margin", &O::margin), field("decimals", &O::decimals));
   }
 };
 

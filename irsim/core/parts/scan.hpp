@@ -12,10 +12,10 @@ struct ScanOptions {
   int sectors;
   std::optional<double> range_max;  // range that becomes 1 [m]; none: the largest range of the lidar
   bool nearness;
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = ScanOptions;
-    return std::make_tuple(field("sectors", &O::sectors), field("range_max", &O::range_max),
-                           field("nearness", &O::nearness));
+    return visit(field("sectors", &O::sectors), field("range_max", &O::range_max), field("nearness", &O::nearness));
   }
 };
 

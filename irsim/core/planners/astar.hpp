@@ -8,7 +8,10 @@ namespace irsim {
 
 struct AstarOptions {
   double resolution;  // cell size [m]; 0: as in the map
-  static constexpr auto fields() { return std::make_tuple(field("resolution", &AstarOptions::resolution)); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("resolution", &AstarOptions::resolution));
+  }
 };
 
 inline Plan astar(const AstarOptions& options, const Problem& problem) {

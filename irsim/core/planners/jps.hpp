@@ -8,7 +8,10 @@ namespace irsim {
 
 struct JpsOptions {
   double resolution;  // cell size [m]; 0: as in the map
-  static constexpr auto fields() { return std::make_tuple(field("resolution", &JpsOptions::resolution)); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("resolution", &JpsOptions::resolution));
+  }
 };
 
 inline Plan jps(const JpsOptions& options, const Problem& problem) { return search_jumps(problem, options.resolution); }

@@ -9,9 +9,10 @@ namespace irsim {
 struct PrmOptions {
   int n_sample, n_knn;
   double max_edge_len;  // [m]
-  static constexpr auto fields() {
-    return std::make_tuple(field("n_sample", &PrmOptions::n_sample), field("n_knn", &PrmOptions::n_knn),
-                           field("max_edge_len", &PrmOptions::max_edge_len));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("n_sample", &PrmOptions::n_sample), field("n_knn", &PrmOptions::n_knn),
+                 field("max_edge_len", &PrmOptions::max_edge_len));
   }
 };
 

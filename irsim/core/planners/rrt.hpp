@@ -9,10 +9,10 @@ namespace irsim {
 struct RrtOptions {
   double expand_dis, path_resolution, goal_sample_rate;
   int max_iter;
-  static constexpr auto fields() {
-    return std::make_tuple(
-        field("expand_dis", &RrtOptions::expand_dis), field("path_resolution", &RrtOptions::path_resolution),
-        field("goal_sample_rate", &RrtOptions::goal_sample_rate), field("max_iter", &RrtOptions::max_iter));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("expand_dis", &RrtOptions::expand_dis), field("path_resolution", &RrtOptions::path_resolution),
+                 field("goal_sample_rate", &RrtOptions::goal_sample_rate), field("max_iter", &RrtOptions::max_iter));
   }
 };
 

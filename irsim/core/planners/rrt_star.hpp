@@ -11,12 +11,13 @@ struct RrtStarOptions {
   int max_iter;
   double connect_circle_dist;
   bool search_until_max_iter;
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = RrtStarOptions;
-    return std::make_tuple(field("expand_dis", &O::expand_dis), field("path_resolution", &O::path_resolution),
-                           field("goal_sample_rate", &O::goal_sample_rate), field("max_iter", &O::max_iter),
-                           field("connect_circle_dist", &O::connect_circle_dist),
-                           field("search_until_max_iter", &O::search_until_max_iter));
+    return visit(field("expand_dis", &O::expand_dis), field("path_resolution", &O::path_resolution),
+                 field("goal_sample_rate", &O::goal_sample_rate), field("max_iter", &O::max_iter),
+                 field("connect_circle_dist", &O::connect_circle_dist),
+                 field("search_until_max_iter", &O::search_until_max_iter));
   }
 };
 

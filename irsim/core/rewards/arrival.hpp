@@ -8,7 +8,10 @@ namespace irsim {
 
 struct ArrivalOptions {
   bool each;
-  static constexpr auto fields() { return std::make_tuple(field("each", &ArrivalOptions::each)); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("each", &ArrivalOptions::each));
+  }
 };
 
 inline double arrival(const ArrivalOptions& o, const LearnerStep& step) {

@@ -10,9 +10,10 @@ struct ClearanceOptions {
   enum To { kAll, kRobots, kObstacles };
   double margin;  // [m]
   To to;
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using O = ClearanceOptions;
-    return std::make_tuple(field("margin", &O::margin), choice("to", &O::to, "all", "robots", "obstacles"));
+    return visit(field("margin", &O::margin), choice("to", &O::to, "all", "robots", "obstacles"));
   }
 };
 

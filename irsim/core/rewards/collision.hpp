@@ -8,7 +8,10 @@
 namespace irsim {
 
 struct CollisionOptions {
-  static constexpr auto fields() { return std::make_tuple(); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit();
+  }
 };
 
 inline double collision(const CollisionOptions&, const LearnerStep& step) { return step.collided ? 1.0 : 0.0; }

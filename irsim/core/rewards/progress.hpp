@@ -8,7 +8,10 @@
 namespace irsim {
 
 struct ProgressOptions {
-  static constexpr auto fields() { return std::make_tuple(); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit();
+  }
 };
 
 /// 0 without a goal.

@@ -9,7 +9,10 @@ namespace irsim {
 struct SmoothnessOptions {
   enum Of { kChange, kTurning };
   Of of;
-  static constexpr auto fields() { return std::make_tuple(choice("of", &SmoothnessOptions::of, "change", "turning")); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(choice("of", &SmoothnessOptions::of, "change", "turning"));
+  }
 };
 
 /// The square, times the duration of the step [s].

@@ -8,7 +8,10 @@ namespace irsim {
 
 struct SocialOptions {
   double distance;  // [m]
-  static constexpr auto fields() { return std::make_tuple(field("distance", &SocialOptions::distance)); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("distance", &SocialOptions::distance));
+  }
 };
 
 /// The missing share of the distance, times the duration of the step [s].

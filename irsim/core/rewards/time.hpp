@@ -8,7 +8,10 @@
 namespace irsim {
 
 struct TimeOptions {
-  static constexpr auto fields() { return std::make_tuple(); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit();
+  }
 };
 
 inline double time(const TimeOptions&, const LearnerStep& step) { return step.step_time; }

@@ -24,10 +24,11 @@ struct RouteOptions {
   double lookahead;  // distance along the path of the point to head for [m]; 0: the next corner in sight
   std::vector<std::vector<double>> within;  // corners x, y of the area that the path must not leave [m]; empty: none
   std::vector<int> avoid;                   // zones of the world that are solid for this object
-  static constexpr auto fields() {
-    return std::make_tuple(field("planner", &RouteOptions::planner), field("replan", &RouteOptions::replan),
-                           field("lookahead", &RouteOptions::lookahead), field("within", &RouteOptions::within),
-                           field("avoid", &RouteOptions::avoid));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("planner", &RouteOptions::planner), field("replan", &RouteOptions::replan),
+                 field("lookahead", &RouteOptions::lookahead), field("within", &RouteOptions::within),
+                 field("avoid", &RouteOptions::avoid));
   }
 };
 

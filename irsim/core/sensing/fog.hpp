@@ -22,10 +22,11 @@ struct Fog {
   int columns, rows;
   std::vector<int> carriers;  // robots that clear the fog with their first lidar
   std::vector<View> views;    // fields of view of robots that clear the fog without a lidar
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using F = Fog;
-    return std::make_tuple(field("origin", &F::origin), field("size", &F::size), field("columns", &F::columns),
-                           field("rows", &F::rows), field("carriers", &F::carriers), field("views", &F::views));
+    return visit(field("origin", &F::origin), field("size", &F::size), field("columns", &F::columns),
+                 field("rows", &F::rows), field("carriers", &F::carriers), field("views", &F::views));
   }
 
   std::size_t cells() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }

@@ -17,10 +17,11 @@ struct View {
   int object;
   double angle, reach;
   bool occlusion;  // whether what is hidden behind objects that are not unobstructed is left out
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using V = View;
-    return std::make_tuple(field("object", &V::object), field("angle", &V::angle), field("reach", &V::reach),
-                           field("occlusion", &V::occlusion));
+    return visit(field("object", &V::object), field("angle", &V::angle), field("reach", &V::reach),
+                 field("occlusion", &V::occlusion));
   }
 };
 

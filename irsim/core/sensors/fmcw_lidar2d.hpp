@@ -17,13 +17,14 @@ struct FmcwLidar2dOptions {
   std::array<double, 3> offset;  // sensor pose in the body frame [m, m, rad]
   bool motion_compensate;        // whether the motion of the carrier is subtracted
   double velocity_noise_std;     // standard deviation of radial velocities, also without `noise` [m/s]
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using F = FmcwLidar2dOptions;
-    return std::make_tuple(
-        field("range_min", &F::range_min), field("range_max", &F::range_max), field("angle_range", &F::angle_range),
-        field("number", &F::number), field("endpoint", &F::endpoint), field("noise", &F::noise), field("std", &F::std),
-        field("angle_std", &F::angle_std), field("offset", &F::offset),
-        field("motion_compensate", &F::motion_compensate), field("velocity_noise_std", &F::velocity_noise_std));
+    return visit(field("range_min", &F::range_min), field("range_max", &F::range_max),
+                 field("angle_range", &F::angle_range), field("number", &F::number), field("endpoint", &F::endpoint),
+                 field("noise", &F::noise), field("std", &F::std), field("angle_std", &F::angle_std),
+                 field("offset", &F::offset), field("motion_compensate", &F::motion_compensate),
+                 field("velocity_noise_std", &F::velocity_noise_std));
   }
 };
 

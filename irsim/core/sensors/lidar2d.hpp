@@ -16,12 +16,13 @@ struct Lidar2dOptions {
   double angle_std;              // standard deviation of beam directions [rad]
   std::array<double, 3> offset;  // sensor pose in the body frame [m, m, rad]
   bool has_velocity;             // whether the world-frame velocity of the object hit by each beam is recorded
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using L = Lidar2dOptions;
-    return std::make_tuple(
-        field("range_min", &L::range_min), field("range_max", &L::range_max), field("angle_range", &L::angle_range),
-        field("number", &L::number), field("endpoint", &L::endpoint), field("noise", &L::noise), field("std", &L::std),
-        field("angle_std", &L::angle_std), field("offset", &L::offset), field("has_velocity", &L::has_velocity));
+    return visit(field("range_min", &L::range_min), field("range_max", &L::range_max),
+                 field("angle_range", &L::angle_range), field("number", &L::number), field("endpoint", &L::endpoint),
+                 field("noise", &L::noise), field("std", &L::std), field("angle_std", &L::angle_std),
+                 field("offset", &L::offset), field("has_velocity", &L::has_velocity));
   }
 };
 

@@ -9,8 +9,9 @@ namespace irsim {
 struct Circle {
   double radius;                 // [m]
   std::array<double, 2> center;  // body frame [m]
-  static constexpr auto fields() {
-    return std::make_tuple(field("radius", &Circle::radius), field("center", &Circle::center));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("radius", &Circle::radius), field("center", &Circle::center));
   }
 };
 

@@ -10,7 +10,10 @@ namespace irsim {
 
 struct GridCells {
   std::shared_ptr<OccupancyGrid> grid;
-  static constexpr auto fields() { return std::make_tuple(field("grid", &GridCells::grid)); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("grid", &GridCells::grid));
+  }
 };
 
 inline Outline outline(const GridCells& cells, const Draws&, std::uint64_t) { return cells_outline(cells.grid); }

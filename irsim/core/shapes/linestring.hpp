@@ -7,7 +7,10 @@ namespace irsim {
 
 struct Linestring {
   Corners vertices;  // body frame [m]
-  static constexpr auto fields() { return std::make_tuple(field("vertices", &Linestring::vertices)); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("vertices", &Linestring::vertices));
+  }
 };
 
 inline Outline outline(const Linestring& l, const Draws&, std::uint64_t) {

@@ -14,12 +14,12 @@ struct PerlinCells {
   double complexity, fill;
   int fractal;
   double attenuation;
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using P = PerlinCells;
-    return std::make_tuple(field("size", &P::size), field("every", &P::every), field("origin", &P::origin),
-                           field("cell_size", &P::cell_size), field("complexity", &P::complexity),
-                           field("fill", &P::fill), field("fractal", &P::fractal),
-                           field("attenuation", &P::attenuation));
+    return visit(field("size", &P::size), field("every", &P::every), field("origin", &P::origin),
+                 field("cell_size", &P::cell_size), field("complexity", &P::complexity), field("fill", &P::fill),
+                 field("fractal", &P::fractal), field("attenuation", &P::attenuation));
   }
 };
 

@@ -17,7 +17,10 @@ inline std::vector<Vec2> points(const Corners& corners) {
 
 struct Polygon {
   Corners vertices;  // body frame [m]
-  static constexpr auto fields() { return std::make_tuple(field("vertices", &Polygon::vertices)); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("vertices", &Polygon::vertices));
+  }
 };
 
 inline Outline outline(const Polygon& p, const Draws&, std::uint64_t) { return {Kind::polygon, points(p.vertices)}; }

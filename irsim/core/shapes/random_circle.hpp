@@ -9,8 +9,9 @@ namespace irsim {
 struct RandomCircle {
   std::array<double, 2> radius_range;  // [m]
   std::array<double, 2> center;        // body frame [m]
-  static constexpr auto fields() {
-    return std::make_tuple(field("radius_range", &RandomCircle::radius_range), field("center", &RandomCircle::center));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("radius_range", &RandomCircle::radius_range), field("center", &RandomCircle::center));
   }
 };
 

@@ -12,12 +12,12 @@ struct RandomPolygon {
   std::array<double, 2> irregularity_range, spikeyness_range;
   std::array<int, 2> num_vertices_range;  // upper end excluded
   bool closed;
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using P = RandomPolygon;
-    return std::make_tuple(field("center_range", &P::center_range), field("avg_radius_range", &P::avg_radius_range),
-                           field("irregularity_range", &P::irregularity_range),
-                           field("spikeyness_range", &P::spikeyness_range),
-                           field("num_vertices_range", &P::num_vertices_range), field("closed", &P::closed));
+    return visit(field("center_range", &P::center_range), field("avg_radius_range", &P::avg_radius_range),
+                 field("irregularity_range", &P::irregularity_range), field("spikeyness_range", &P::spikeyness_range),
+                 field("num_vertices_range", &P::num_vertices_range), field("closed", &P::closed));
   }
 };
 

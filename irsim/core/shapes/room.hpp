@@ -7,7 +7,10 @@ namespace irsim {
 
 struct Room {
   Corners vertices;  // body frame [m], in either order
-  static constexpr auto fields() { return std::make_tuple(field("vertices", &Room::vertices)); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("vertices", &Room::vertices));
+  }
 };
 
 inline Outline outline(const Room& r, const Draws&, std::uint64_t) { return {Kind::room, points(r.vertices)}; }

@@ -47,9 +47,10 @@ struct ObjectSpec {
   std::int64_t appear_step;                          // steps for which it is not in the world at all
   std::int64_t vanish_step;                          // step in which it leaves the world; 0: never
 
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using S = ObjectSpec;
-    return std::make_tuple(
+    return visit(
         field("number", &S::number), field("role", &S::role), field("group", &S::group), field("drive", &S::drive),
         field("parts", &S::parts), field("static", &S::is_static), field("unobstructed", &S::unobstructed),
         field("wander", &S::wander), field("loop", &S::loop), field("pose", &S::pose), field("extra", &S::extra),
@@ -76,13 +77,14 @@ struct RandomPlacement {
   std::vector<int> keep_objects;                 // objects that they keep clear of, at starts and goals,
   std::vector<double> keep_radii;                // and how far from each of them [m]
   int attempts;                                  // maximum number of draws for an object
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using P = RandomPlacement;
-    return std::make_tuple(
-        field("objects", &P::objects), field("range_low", &P::range_low), field("range_high", &P::range_high),
-        field("goal_low", &P::goal_low), field("goal_high", &P::goal_high), field("min_distance", &P::min_distance),
-        field("goal_distance", &P::goal_distance), field("keep_points", &P::keep_points),
-        field("keep_objects", &P::keep_objects), field("keep_radii", &P::keep_radii), field("attempts", &P::attempts));
+    return visit(field("objects", &P::objects), field("range_low", &P::range_low), field("range_high", &P::range_high),
+                 field("goal_low", &P::goal_low), field("goal_high", &P::goal_high),
+                 field("min_distance", &P::min_distance), field("goal_distance", &P::goal_distance),
+                 field("keep_points", &P::keep_points), field("keep_objects", &P::keep_objects),
+                 field("keep_radii", &P::keep_radii), field("attempts", &P::attempts));
   }
 };
 
@@ -94,11 +96,11 @@ struct CircleCrossing {
   double noise;                  // largest change of x and of y of a start [m]
   double clearance;              // smallest distance between footprints, of starts and of goals [m]
   int attempts;                  // maximum number of draws for an object
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using P = CircleCrossing;
-    return std::make_tuple(field("objects", &P::objects), field("center", &P::center), field("radius", &P::radius),
-                           field("noise", &P::noise), field("clearance", &P::clearance),
-                           field("attempts", &P::attempts));
+    return visit(field("objects", &P::objects), field("center", &P::center), field("radius", &P::radius),
+                 field("noise", &P::noise), field("clearance", &P::clearance), field("attempts", &P::attempts));
   }
 };
 
@@ -109,10 +111,11 @@ struct SquareCrossing {
   double width;                  // of the square [m]
   double clearance;              // smallest distance between footprints, of starts and of goals [m]
   int attempts;                  // maximum number of draws for a start, and for a goal
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using P = SquareCrossing;
-    return std::make_tuple(field("objects", &P::objects), field("center", &P::center), field("width", &P::width),
-                           field("clearance", &P::clearance), field("attempts", &P::attempts));
+    return visit(field("objects", &P::objects), field("center", &P::center), field("width", &P::width),
+                 field("clearance", &P::clearance), field("attempts", &P::attempts));
   }
 };
 
@@ -130,11 +133,12 @@ struct Perturbation {
   double delay;             // longest time for which the object stands still at its start [s]
   std::vector<int> speeds;  // controls that are speeds
   int attempts;             // maximum number of draws of a start
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using P = Perturbation;
-    return std::make_tuple(field("object", &P::object), field("position", &P::position), field("heading", &P::heading),
-                           field("speed", &P::speed), field("delay", &P::delay), field("speeds", &P::speeds),
-                           field("attempts", &P::attempts));
+    return visit(field("object", &P::object), field("position", &P::position), field("heading", &P::heading),
+                 field("speed", &P::speed), field("delay", &P::delay), field("speeds", &P::speeds),
+                 field("attempts", &P::attempts));
   }
   bool moves() const { return position > 0.0 || heading > 0.0; }
 };

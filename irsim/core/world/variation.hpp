@@ -16,11 +16,12 @@ struct Variation {
   std::vector<int> objects;
   double low, high;
   bool same;  // whether all objects share one draw; a number is one anyway
-  static constexpr auto fields() {
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
     using V = Variation;
-    return std::make_tuple(
-        choice("quantity", &V::quantity, "number", "size", "speed", "acceleration", "sensor_noise", "latency"),
-        field("objects", &V::objects), field("low", &V::low), field("high", &V::high), field("same", &V::same));
+    return visit(choice("quantity", &V::quantity, "number", "size", "speed", "acceleration", "sensor_noise", "latency"),
+                 field("objects", &V::objects), field("low", &V::low), field("high", &V::high),
+                 field("same", &V::same));
   }
 };
 
@@ -29,9 +30,10 @@ struct Level {
   std::vector<Variation> variations;
   int first_variant;  // the variants of the world of which one is drawn
   int variants;
-  static constexpr auto fields() {
-    return std::make_tuple(field("variations", &Level::variations), field("first_variant", &Level::first_variant),
-                           field("variants", &Level::variants));
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("variations", &Level::variations), field("first_variant", &Level::first_variant),
+                 field("variants", &Level::variants));
   }
 };
 
