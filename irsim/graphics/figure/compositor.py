@@ -28,6 +28,7 @@ from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.figure.background import Background, Resting, Sheet, TrackLayer
 from irsim.graphics.figure.canvas import Box, Canvas
 from irsim.graphics.figure.glyphs import QuickText
+from irsim.graphics.figure.image_layers import FogImage
 from irsim.graphics.figure.layers import MarkArtist, Spokes
 
 __all__ = ["Compositor"]
@@ -138,7 +139,7 @@ class Compositor:
                     continue
             if artist in frame:
                 frame[artist].lay_over(view)
-            elif not (isinstance(artist, MarkArtist | Spokes | QuickText) and artist.paint_on(view)):
+            elif not (isinstance(artist, MarkArtist | Spokes | QuickText | FogImage) and artist.paint_on(view)):
                 view.unknown = True
                 artist.draw(view.renderer)
         self._drawn = None if view.unknown else painted + view.painter.take_boxes()

@@ -173,7 +173,8 @@ class SceneFigure:
 
     def draw(self) -> None:
         """Draw the artists into the canvas."""
-        layers: list[GridLayer | MarkLayer] = [*self._grids.values(), *self._marks.values()]
+        layers: list[GridLayer | MarkLayer | FogLayer] = [*self._grids.values(), *self._marks.values()]
+        layers += [] if self._fog is None or not self._fog.soft else [self._fog]
         self.compositor.draw(
             {layer.artist: (layer.version, layer.resting_scenes) for layer in layers},
             {layer.artist: layer for layer in self._tracks.values()},

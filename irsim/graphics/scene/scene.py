@@ -197,13 +197,17 @@ class Beams:
 
 @dataclass(slots=True, eq=False)
 class Fog:
-    """Fog over the unexplored area; ``explored`` (nx, ny) marks the cells of ``extent`` that are free of fog."""
+    """Fog over the unexplored area; ``explored`` (nx, ny) marks the cells of ``extent`` that are free of fog.
+
+    ``soft`` is the width of its edge as a share of a cell, up to 1; 0 is a sharp edge.
+    """
 
     explored: NDArray[np.bool_]
     extent: tuple[float, float, float, float]
     color: Color
     alpha: float
     zorder: float
+    soft: float = 0.0
 
 
 @dataclass(slots=True, eq=False)

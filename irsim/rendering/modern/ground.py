@@ -40,6 +40,8 @@ _CONTOUR = 1.2
 MAX_CONTOUR = 20_000
 """Number of pieces of a contour above which it is left out: cells are then smaller than the line."""
 _FOG_ALPHA = 0.92
+_FOG_EDGE = 2 / 6
+"""Width of the edge of fog, as a share of a cell."""
 _HATCH_STEP, _HATCH, _HATCH_ALPHA = 9.0, 0.9, 0.22
 _SAMPLES_PER_CELL = 2
 MIN_SEEN_SHARE = 0.25
@@ -78,7 +80,7 @@ def _runs(edges: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
 
 def shown_fog(fog: Fog, theme: Theme) -> Fog:
     """Fog in the colours of a theme, below static bodies."""
-    return replace(fog, color=theme.fog, alpha=_FOG_ALPHA, zorder=FOG_Z)
+    return replace(fog, color=theme.fog, alpha=_FOG_ALPHA, zorder=FOG_Z, soft=_FOG_EDGE)
 
 
 def fog_marks(fog: Fog, layout: Layout, theme: Theme) -> list[Mark]:
@@ -87,20 +89,18 @@ def fog_marks(fog: Fog, layout: Layout, theme: Theme) -> list[Mark]:
     columns, rows = fog.explored.shape
     step = layout.metres(_HATCH_STEP) * np.sqrt(2)
     sample = min((x1 - x0) / columns, (y1 - y0) / rows) / _SAMPLES_PER_CELL
-    lines = []
-    for start in np.arange(x0 - (y1 - y0), x1, step):
-        along = np.arange(0.0, y1 - y0, sample)
-        x, y = start + along, y0 + along
-        inside = (x >= x0) & (x < x1)
-        i = np.clip(((x - x0) / (x1 - x0) * columns).astype(int), 0, columns - 1)
-        j = np.clip(((y - y0) / (y1 - y0) * rows).astype(int), 0, rows - 1)
-        hidden = inside & ~np.asarray(fog.explored, dtype=bool)[i, j]
-        for _, a, b in _runs(hidden[None]):
-            lines.append(((x[a], y[a]), (x[b - 1], y[b - 1])))
-    if not lines:
+    along = np.arange(0.0, y1 - y0, sample)
+    x, y = np.arange(x0 - (y1 - y0), x1, step)[:, None] + along, y0 + along
+    inside = (x >= x0) & (x < x1)
+    i = np.clip(((x - x0) / (x1 - x0) * columns).astype(int), 0, columns - 1)
+    j = np.clip(((y - y0) / (y1 - y0) * rows).astype(int), 0, rows - 1)
+    runs = np.array(_runs(inside & ~np.asarray(fog.explored, dtype=bool)[i, j]), dtype=int).reshape(-1, 3)
+    if not len(runs):
         return []
+    line, first, last = runs[:, 0], runs[:, 1], runs[:, 2] - 1
+    ends = np.stack([x[line, first], y[first], x[line, last], y[last]], axis=1).reshape(-1, 2, 2)
     edge = stroke(theme.still_edge, _HATCH)
-    return [Mark(FRAME, "hatch", Segments(np.array(lines)), None, edge, _HATCH_ALPHA, FOG_Z + 0.01)]
+    return [Mark(FRAME, "hatch", Segments(ends), None, edge, _HATCH_ALPHA, FOG_Z + 0.01)]
 
 
 def is_seen(fog: Fog, geometry: Geometry) -> bool:

@@ -103,13 +103,13 @@ def place_names(
     leaders, labels, dropped = list[Mark](), list[Label](), 0
     size = layout.sizes.name
     for wish in wishes:
-        found = _cheapest(
+        best = _cheapest(
             _places(wish, layout, sizes.width(wish.text, size, bold=True), size), inside, taken, walls, lines
         )
-        if found is None:
+        if best is None:
             dropped += 1
             continue
-        chosen, box = found
+        chosen, box = best
         taken.append(box)
         place = layout.at(box[0], box[1] + _DESCENT * size)
         halo = (theme.paper, NAME["halo"])
@@ -129,7 +129,7 @@ def _cheapest(
     lines: Sequence[tuple[float, Floats]],
 ) -> tuple[int, Bounds] | None:
     """Number and box of the free place of least cost; a place that cannot be the cheapest is not looked at."""
-    found: tuple[int, Bounds] | None = None
+    best: tuple[int, Bounds] | None = None
     least = math.inf, math.inf
     for number, (box, cost) in enumerate(zip(places, _PLACE_COSTS, strict=True)):
         if cost >= least[0]:
@@ -142,8 +142,8 @@ def _cheapest(
         for price, points in lines if cost <= least[0] else ():
             whole += price * _holds(box, points)
         if (whole, cost) < least:
-            found, least = (number, box), (whole, cost)
-    return found
+            best, least = (number, box), (whole, cost)
+    return best
 
 
 def _places(wish: Wish, layout: Layout, width: float, size: float) -> Iterator[Bounds]:

@@ -14,9 +14,10 @@ from PIL import Image, ImageSequence
 import irsim
 from irsim.bundled import templates
 from irsim.graphics.figure import dashes
+from irsim.graphics.figure.figure import SceneFigure
 from irsim.graphics.figure.measuring import TextSizes
 from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.scene import Circle
+from irsim.graphics.scene.scene import Circle, Fog, Scene
 from irsim.graphics.scene.theme import DARK, LIGHT, THEMES
 from irsim.options.colors import rgb
 from irsim.rendering.modern.layout import NORMAL, PRINT, SMALL
@@ -197,6 +198,16 @@ def test_the_same_picture_at_another_resolution_differs_only_in_that(opened: Ope
     assert similarity(one, other) > 0.95
 
 
+def test_pictures_of_high_resolution_are_the_same_at_full_size(opened: Opened) -> None:
+    """At one pixel per unit, letters and lines along the axes lie on whole pixels, so this compares finer pictures."""
+    env = opened("doorway")
+    take(env, 30)
+    images = [Image.fromarray(pixels_of(env, 400, ratio)[0]).convert("L") for ratio in (3.125, 6.25)]
+    size = round(images[0].width / 3.125), round(images[0].height / 3.125)
+    one, other = (np.asarray(image.resize(size, Image.Resampling.BOX), float) for image in images)
+    assert similarity(one, other) > 0.98
+
+
 def similarity(one: np.ndarray, other: np.ndarray) -> float:
     """Structural similarity (Wang and others, 2004) in windows of 7 x 7 pixels."""
     some, others = (np.lib.stride_tricks.sliding_window_view(image, (7, 7)) for image in (one, other))
@@ -205,6 +216,20 @@ def similarity(one: np.ndarray, other: np.ndarray) -> float:
     flat, low = (0.01 * 255) ** 2, (0.03 * 255) ** 2
     level = (2 * mean * mean_other + flat) / (mean**2 + mean_other**2 + flat)
     return float((level * (2 * together + low) / (some.var((2, 3)) + others.var((2, 3)) + low)).mean())
+
+
+def test_fog_ends_softly_over_a_third_of_a_cell() -> None:
+    figure = SceneFigure((400, 200), 96, page="#ffffff")
+    for free in (2, 3):
+        explored = np.zeros((4, 2), dtype=bool)
+        explored[:free] = True
+        fog = Fog(explored, (0.0, 4.0, 0.0, 2.0), "#000000", 1.0, 1.0, soft=1 / 3)
+        figure.show(Scene(0.0, "", (0.0, 4.0, 0.0, 2.0), None, [], [], [], [], fog), None)
+        levels = np.asarray(figure.pixels(tight=False)[0])[50, :, 0].astype(int)
+        edge = 100 * free
+        assert (levels[: edge - 17] == 255).all()
+        assert (levels[edge + 17 :] == 0).all()
+        assert levels[edge - 17 : edge + 17] == pytest.approx(np.linspace(255, 0, 34), abs=6)
 
 
 @pytest.mark.slow
