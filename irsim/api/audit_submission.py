@@ -95,7 +95,7 @@ def audit_submission(
     manifest = read_manifest(place, problems)
     result: SuiteResult | None = None
     claim: Claim | None = None
-    runs, sampled, again = list[RunAudit](), 0, Replay()
+    runs, records, again = list[RunAudit](), set[tuple[str, str, int]](), Replay()
     if manifest is not None and files_are_whole(place, manifest, problems):
         plan = read_plan(place, manifest, problems)
         result = read_result(place, manifest, problems) if plan is not None else None
@@ -111,19 +111,22 @@ def audit_submission(
                 check_episodes(claim, ready, result, manifest, problems)
                 check_log(place, result, problems)
                 check_table(place, claim, result, problems)
-                runs, sampled = check_records(place, claim, result, manifest, problems)
+                runs, records = check_records(place, claim, result, manifest, problems)
                 if replay is not None and _rows_fit(problems):
                     again = replay_episodes(
                         place, claim, ready, result, manifest, problems,
                         number=replay, salt=salt, workers=workers, progress=progress,
                     )  # fmt: skip
     name, equal = clean(str(folder), 200), not problems.count
+    episodes = 0 if result is None else len(result.episodes)
+    unchecked = episodes - len(records | again.rows)
     return SubmissionAudit(
         folder=name,
         equal=equal,
-        summary=_summary(name, manifest, claim, result, sampled, again, problems),
-        episodes=0 if result is None else len(result.episodes),
-        sampled=sampled,
+        summary=_summary(name, manifest, claim, len(records), unchecked, again, problems, episodes),
+        episodes=episodes,
+        sampled=len(records),
+        unchecked=unchecked,
         engine="" if manifest is None else clean(manifest.engine, 64),
         replayed=again.done,
         salt=again.salt,
@@ -145,10 +148,11 @@ def _summary(
     name: str,
     manifest: Manifest | None,
     claim: Claim | None,
-    result: SuiteResult | None,
     sampled: int,
+    unchecked: int,
     again: Replay,
     problems: Problems,
+    episodes: int,
 ) -> str:
     """The result in one sentence."""
     ran = "none was run again (--replay does)"
@@ -160,13 +164,11 @@ def _summary(
         tail = f"; {ran}" if again.salt else ""
         return f"{name}: {problems.count} problems; the first: {first.path}: {first.message}{tail}"
     assert manifest is not None
-    assert claim is not None
-    assert result is not None  # without problems all are read
-    parts = [
-        f"{len(result.episodes)} episodes",
-        f"{sampled} records begin as the suite does and are equal to their rows",
-    ]
+    assert claim is not None  # without problems all are read
+    parts = [f"{episodes} episodes", f"{sampled} records begin as the suite does and are equal to their rows"]
     parts += [ran, *([claim.part] if claim.part else [])]
+    if unchecked:
+        parts.append(f"nothing here checks {unchecked} of {episodes} rows")
     if manifest.engine != engine():
         parts.append(f"it was run by engine {clean(manifest.engine, 64)}, and this is engine {engine()}")
     return f"{name}: {'; '.join(parts)}"

@@ -183,14 +183,14 @@ def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> Benc
     """A copy of a result with its episodes and with the rows and notes that follow from them."""
     protocols = protocols_of(head.scenarios)
     summaries = summaries_of(episodes, head.scenarios, head.behaviors, protocols, head.groups)
-    notes = perturbation_notes(head.perturbed) + notes_of(episodes, head.random, head.seeds)
+    notes = perturbation_notes(head.perturbed) + notes_of(episodes, head)
     notes += grouped_notes(head.unequal)
     unopened = {
         name: finding.message for name in head.warnings for finding in head.warnings[name] if finding.code == UNOPENED
     }
     notes += grouped_notes(unopened)
-    rows = rows_of(summaries, head.behaviors, head.random)
-    pairs = pairs_of(summaries, head.behaviors, head.random)
+    rows = rows_of(summaries, head.behaviors, head.random, head.certain)
+    pairs = pairs_of(summaries, head.behaviors, head.random, head.certain)
     changes = {
         "episodes": list(episodes),
         "rows": rows,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from irsim.benchmarks.incidents import placed
-from irsim.benchmarks.summary import is_summary, paired_differences
+from irsim.benchmarks.summary import counts_once, is_summary, paired_differences
 from irsim.metrics.statistics import mcnemar
 from irsim.results.benchmark import BenchmarkRow, EpisodeRow, PolicyPair, PolicyRank
 
@@ -17,7 +17,10 @@ _KEY = "success"
 
 
 def pairs_of(
-    summaries: Mapping[str, Sequence[EpisodeRow]], behaviors: Sequence[str], random: Mapping[str, Sequence[str]]
+    summaries: Mapping[str, Sequence[EpisodeRow]],
+    behaviors: Sequence[str],
+    random: Mapping[str, Sequence[str]],
+    certain: Mapping[str, Collection[str]],
 ) -> list[PolicyPair]:
     """Every pair of policies in every row, by the episodes with the same scenario and seed.
 
@@ -25,27 +28,33 @@ def pairs_of(
         summaries: Episodes of each row, see :func:`irsim.benchmarks.summary.summaries_of`.
         behaviors: The policies, in order.
         random: The random parts of each scenario; where nothing is random there is nothing to compare.
+        certain: Scenario → policies that nothing random reaches.
     """
     pairs = []
     for name, episodes in summaries.items():
         if not is_summary(name) and not random[name]:
             continue
         trials = _trials(episodes, behaviors)
+        once = {one: counts_once([own for own in episodes if own.behavior == one], certain) for one in behaviors}
         for mine, other in itertools.combinations(range(len(behaviors)), 2):
-            both = [(trial[mine], trial[other]) for trial in trials]
+            equal = once[behaviors[mine]] and once[behaviors[other]]
+            both = [(trial[mine], trial[other]) for trial in (_first_of_each(trials) if equal else trials)]
             if not both:
                 continue
+            exact = equal and not is_summary(name)
             wins = [(a.outcome == "success", b.outcome == "success") for a, b in both]
-            first, second = wins.count((True, False)), wins.count((False, True))
+            only, others = wins.count((True, False)), wins.count((False, True))
             pairs.append(
                 PolicyPair(
                     scenario=name,
                     behavior=behaviors[mine],
                     against=behaviors[other],
-                    difference=paired_differences(both, [_KEY], [_KEY], together=is_summary(name))[_KEY],
-                    only_behavior=first,
-                    only_against=second,
-                    p=None if is_summary(name) else mcnemar(first, second),
+                    difference=paired_differences(both, [_KEY], [] if exact else [_KEY], together=is_summary(name))[
+                        _KEY
+                    ],
+                    only_behavior=only,
+                    only_against=others,
+                    p=None if exact or is_summary(name) else mcnemar(only, others),
                 )
             )
     return pairs
@@ -77,10 +86,14 @@ def ranks_of(rows: Sequence[BenchmarkRow], pairs: Sequence[PolicyPair]) -> list[
 
 
 def _lead(pair: PolicyPair, behavior: str) -> int | None:
-    """1 if a policy is better for sure than the other of a pair, -1 if worse, 0 if open; None if it is not in it."""
-    low, high = pair.difference.low, pair.difference.high
-    if behavior not in (pair.behavior, pair.against) or low is None or high is None:
+    """1 if a policy is better for sure than the other of a pair, -1 if worse, 0 if open; None if it is not in it.
+
+    A difference without an interval is exact.
+    """
+    mean, low, high = pair.difference.mean, pair.difference.low, pair.difference.high
+    if behavior not in (pair.behavior, pair.against) or mean is None:
         return None
+    low, high = (mean, mean) if low is None or high is None else (low, high)
     sign = int(low > 0) - int(high < 0)
     return sign if behavior == pair.behavior else -sign
 
@@ -92,3 +105,11 @@ def _trials(episodes: Sequence[EpisodeRow], behaviors: Sequence[str]) -> list[li
         by_trial.setdefault((one.scenario, one.seed), {})[one.behavior] = one
     complete = [made for _, made in sorted(by_trial.items()) if len(made) == len(behaviors)]
     return [[made[behavior] for behavior in behaviors] for made in complete]
+
+
+def _first_of_each(trials: Sequence[Sequence[EpisodeRow]]) -> list[Sequence[EpisodeRow]]:
+    """The first trial of each scenario."""
+    first: dict[str, Sequence[EpisodeRow]] = {}
+    for trial in trials:
+        first.setdefault(trial[0].scenario, trial)
+    return list(first.values())

@@ -103,7 +103,7 @@ def prepare(
     warnings: dict[str, list[Finding]] = {}
     jobs: list[tuple[str, str, Job, Sequence[int]]] = []
     periods, chances, changes = dict[str, float](), dict[str, list[str]](), dict[str, list[str]]()
-    unequal: dict[str, str] = {}
+    unequal, certain = dict[str, str](), dict[str, list[str]]()
     settled: dict[str, ResolvedScenario] = {}
     for name, source in zip(names, given, strict=True):
         document = _document(source, limits)
@@ -120,8 +120,7 @@ def prepare(
         settled[name], limits_under = scenario, dict[str, dict[str, Limit]]()
         for number, (compared, behavior) in enumerate(zip(opened, wanted, strict=True)):
             policy = shared_with(compared, (parts or {}).get(name, {}))
-            if policy.stochastic and "policy" not in chances[name]:
-                chances[name].append("policy")
+            reached = ["policy"] if policy.stochastic else []
             job = Job(
                 text=str(document.text),
                 path=document.path,
@@ -138,7 +137,10 @@ def prepare(
             with naming(where, number):
                 check_policy(job)
                 driven = scenario_of(job)
-            chances[name] += [part for part in random_parts(driven) if part not in chances[name]]
+            reached += random_parts(driven)
+            chances[name] += [part for part in reached if part not in chances[name]]
+            if not chances_that_count(reached, [policy], scenario):
+                certain.setdefault(name, []).append(behavior)
             limits_under[behavior] = limits_of(driven, own=isinstance(policy, BehaviorPolicy))
             jobs.append((name, behavior, job, chosen))
         chances[name] = chances_that_count(chances[name], opened, scenario)
@@ -161,6 +163,7 @@ def prepare(
         unequal=unequal,
         assumptions=assumptions_of(settled),
         random=chances,
+        certain={name: reached for name, reached in certain.items() if chances[name]},
         rows=[],
         groups={name: list(members) for name, members in (groups or {}).items()},
         episodes=[],

@@ -5,18 +5,20 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from typing import Any, get_args
+from typing import get_args
 
 from irsim.benchmarks.incidents import incident_counts, incident_seeds, placed
 from irsim.benchmarks.suite import Protocol
 from irsim.common.text import listed
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import bootstraps, nested_bootstraps, newcombe, spread, wilson
-from irsim.results.benchmark import BenchmarkRow, EpisodeRow, Estimate, Proportion
+from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow, Estimate, Proportion
 
 __all__ = [
     "ALL",
     "KEYS",
+    "counts_once",
+    "first_of_each",
     "grouped_notes",
     "is_summary",
     "notes_of",
@@ -142,8 +144,37 @@ def summaries_of(
     return rows
 
 
+def counts_once(episodes: Sequence[EpisodeRow], certain: Mapping[str, Collection[str]]) -> bool:
+    """Whether the episodes of a behavior count as one in each scenario.
+
+    They do where nothing random reaches the behavior and the episodes of all seeds are equal. Equal episodes alone do
+    not tell: a planner that fails with each of its draws has equal episodes, and each draw was a trial.
+
+    Args:
+        episodes: Episodes of one behavior.
+        certain: Scenario → behaviors that nothing random reaches.
+    """
+    known: dict[str, EpisodeRow] = {}
+    for one in episodes:
+        same = one.model_copy(update={"seed": 0})
+        if one.behavior not in certain.get(one.scenario, ()) or known.setdefault(one.scenario, same) != same:
+            return False
+    return bool(episodes)
+
+
+def first_of_each(episodes: Sequence[EpisodeRow]) -> list[EpisodeRow]:
+    """The first episode of each scenario."""
+    first: dict[str, EpisodeRow] = {}
+    for one in episodes:
+        first.setdefault(one.scenario, one)
+    return list(first.values())
+
+
 def rows_of(
-    summaries: Mapping[str, Sequence[EpisodeRow]], behaviors: Sequence[str], random: Mapping[str, Sequence[str]]
+    summaries: Mapping[str, Sequence[EpisodeRow]],
+    behaviors: Sequence[str],
+    random: Mapping[str, Sequence[str]],
+    certain: Mapping[str, Collection[str]],
 ) -> list[BenchmarkRow]:
     """Rows of each scenario, and over several, by behavior.
 
@@ -151,16 +182,25 @@ def rows_of(
         summaries: Their episodes, see :func:`summaries_of`.
         behaviors: The behaviors, in order.
         random: The random parts of each scenario.
+        certain: Scenario → behaviors that nothing random reaches.
     """
     rows = []
     for name, chosen in summaries.items():
-        first = {_pair(episode): episode for episode in chosen if episode.behavior == behaviors[0]}
-        certain = not is_summary(name) and not random[name]
-        for behavior in behaviors:
-            mine = [episode for episode in chosen if episode.behavior == behavior]
+        own = {one: [episode for episode in chosen if episode.behavior == one] for one in behaviors}
+        once = {one: counts_once(mine, certain) for one, mine in own.items()}
+        first = {_pair(episode): episode for episode in own[behaviors[0]]}
+        single = not is_summary(name)
+        fixed = single and not random[name]
+        for behavior, mine in own.items():
             if not placed(mine):  # no episode is done yet, or no seed has room
                 continue
-            rows.append(_row(name, behavior, mine, first if behavior != behaviors[0] else {}, certain))
+            both = once[behavior] and once[behaviors[0]]
+            paired = [] if behavior == behaviors[0] else first_of_each(mine) if both else placed(mine)
+            pairs = [(episode, first[_pair(episode)]) for episode in paired if _pair(episode) in first]
+            counted = first_of_each(mine) if once[behavior] else mine
+            row = _row(name, behavior, counted, fixed or (single and once[behavior]))
+            row.paired = _paired(pairs, fixed or (single and both), together=not single)
+            rows.append(row)
     return rows
 
 
@@ -186,21 +226,21 @@ def grouped_notes(notes: Mapping[str, str]) -> list[str]:
     return [f"{listed(names, _MAX_NAMED)}: {note}" for note, names in scenarios.items()]
 
 
-def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]], seeds: Sequence[int]) -> list[str]:
+def notes_of(episodes: Sequence[EpisodeRow], head: BenchmarkResult) -> list[str]:
     """Notes that a reader of the rows must know.
 
     Args:
         episodes: The episodes that are done.
-        random: The random parts of each scenario.
-        seeds: All seeds of the benchmark.
+        head: The result without episodes.
     """
     notes = []
-    fixed = [name for name, chance in random.items() if not chance]
-    if fixed and len(seeds) > 1:
+    fixed = [name for name, chance in head.random.items() if not chance]
+    if fixed and len(head.seeds) > 1:
         notes.append(
             f"{listed(fixed, _MAX_NAMED)}: nothing is random that these policies notice, so every seed gives the same "
             "run and only one was simulated; random placement, motion noise or perturb would make seeds differ"
         )
+    notes += grouped_notes(_notes_of_equal(episodes, head.certain)) if len(head.seeds) > 1 else []
     lost = sorted({episode.scenario for episode in episodes if episode.unreachable})
     if lost:
         count = sum(bool(episode.unreachable) for episode in episodes)
@@ -213,12 +253,30 @@ def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]]
     return notes
 
 
-def _row(
-    name: str, behavior: str, every: list[EpisodeRow], first: dict[Any, EpisodeRow], certain: bool
-) -> BenchmarkRow:
+def _notes_of_equal(episodes: Sequence[EpisodeRow], certain: Mapping[str, Collection[str]]) -> dict[str, str]:
+    """Scenario → note on the policies whose episodes are equal there."""
+    of_cell: dict[tuple[str, str], list[EpisodeRow]] = {}
+    for one in episodes:
+        of_cell.setdefault((one.scenario, one.behavior), []).append(one)
+    equal: dict[str, list[str]] = {}
+    for (scenario, behavior), own in of_cell.items():
+        if counts_once(own, certain):
+            equal.setdefault(scenario, []).append(behavior)
+    return {
+        scenario: f"nothing random reaches {' and '.join(behaviors)}: all seeds give one episode, which counts once"
+        for scenario, behaviors in equal.items()
+    }
+
+
+def _paired(pairs: Sequence[tuple[EpisodeRow, EpisodeRow]], certain: bool, *, together: bool) -> dict[str, Estimate]:
+    """The differences of pairs; empty without pairs."""
+    shares = frozenset[str]() if certain else _PROPORTIONS
+    return paired_differences(pairs, KEYS, shares, together=together) if pairs else {}
+
+
+def _row(name: str, behavior: str, every: list[EpisodeRow], certain: bool) -> BenchmarkRow:
     episodes = placed(every)
     outcomes: list[str] = [episode.outcome for episode in episodes]
-    pairs = [(episode, first[_pair(episode)]) for episode in episodes if _pair(episode) in first]
     shown_as_shares = frozenset() if certain else _PROPORTIONS
     scenarios = [episode.scenario for episode in episodes] if is_summary(name) else None
     metrics = estimates(_columns(episodes), shown_as_shares, scenarios)
@@ -228,7 +286,6 @@ def _row(
         behavior=behavior,
         episodes=len(episodes),
         metrics=metrics,
-        paired=paired_differences(pairs, KEYS, shown_as_shares, together=is_summary(name)) if pairs else {},
         zones={} if is_summary(name) else _zones(episodes),
         roles={} if is_summary(name) else _roles(episodes, certain),
         failed={

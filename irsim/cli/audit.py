@@ -184,6 +184,10 @@ def _show_submission(submission: SubmissionAudit, out: Console) -> None:
         )
         table.add_row(clean(row.scenes, 60), clean(row.policy, 40), *cells)
     out.print(table)
+    if submission.unchecked:
+        rows = f"{submission.unchecked} of {submission.episodes} rows behind these rates"
+        text = f"{rows} are the submitter's word: no record has them, and this audit did not run them again"
+        out.print(f"{text}; --replay all runs every row", style="yellow", soft_wrap=True)
 
 
 def print_finding(finding: AuditFinding, out: Console) -> None:

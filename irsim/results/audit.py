@@ -175,6 +175,9 @@ class SubmissionAudit(Result):
     """Number of rows."""
     sampled: int = 0
     """Number of recorded episodes that were audited and compared with the suite and with their rows."""
+    unchecked: int = 0
+    """Number of rows that are the word of the submitter: this audit has neither a record of them nor ran them again.
+    Rates are made of all rows."""
     engine: str = ""
     """Identity of the engine that ran it, as it says."""
     replayed: int = 0

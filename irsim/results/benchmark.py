@@ -40,7 +40,7 @@ class Proportion(Result):
     rate: float
     """``count / n``."""
     low: float | None
-    """Lower end of the 95 % interval (Wilson); None where nothing is random, because the share is then exact. Of rows
+    """Lower end of the 95 % interval (Wilson); None where nothing is random, because the share is exact there. Of rows
     over several scenarios see ``BenchmarkRow.scenario``."""
     high: float | None
     """Upper end of the interval."""
@@ -68,13 +68,15 @@ class BenchmarkRow(Result):
     scenario: str
     """The file; ``(all)`` for all files together, if each has the same number of episodes, and that number is above
     one or there are at least ten files; ``(all TAG)`` for those with a tag of their suite. A suite with several
-    protocols has ``(all)/freeze``, ``(all)/yield`` instead: each protocol is summarised on its own. Scenarios have
-    equal weights. Intervals of these rows are of a nested bootstrap (2,000 resamples of scenarios, and of seeds within
-    each), of shares at least Wilson's and Newcombe's: they say what other scenarios of the same kind would give."""
+    protocols has ``(all)/freeze``, ``(all)/yield`` instead: each protocol is summarised on its own. Each episode
+    counts once, so scenarios have equal weights unless some of their seeds had no room. Intervals of these rows are of
+    a nested bootstrap (2,000 resamples of scenarios, and of seeds within each), of shares at least Wilson's and
+    Newcombe's: they say what other scenarios of the same kind would give."""
     behavior: str
     """The robots' behavior, or ``as-written``."""
     episodes: int
-    """Number of episodes, without the ``placement-crowded`` ones."""
+    """Number of episodes, without the ``placement-crowded`` ones; the equal ones of ``BenchmarkResult.certain`` are one
+    in each scenario."""
     success: Proportion
     """Every robot reached its goal without a collision before."""
     collision: Proportion
@@ -212,6 +214,9 @@ class BenchmarkResult(Result):
     behaviors know."""
     random: dict[str, list[str]]
     """Parts that the seed decides in each scenario; a scenario without such parts runs with the first seed only."""
+    certain: dict[str, list[str]] = Field(default_factory=dict)
+    """Policies that no such part reaches, by scenario. If the episodes of all seeds are equal, too, they count as
+    one episode in rows and pairs."""
     rows: list[BenchmarkRow]
     """By scenario, then behavior; then all scenarios together, if there are several with equal numbers of episodes, and
     each protocol of a suite on its own."""

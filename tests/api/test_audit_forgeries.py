@@ -171,6 +171,7 @@ def test_an_honest_submission_passes(honest: Path, replay: Any) -> None:
     result = audit_submission(honest, replay=replay, workers=1)
     assert result.equal, causes(result)
     assert (result.episodes, result.sampled, result.replayed) == (8, 5, 0 if replay is None else 8)
+    assert result.unchecked == (3 if replay is None else 0)
     assert result.not_replayed == result.notes == []
 
 

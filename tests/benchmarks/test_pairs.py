@@ -44,7 +44,7 @@ def test_a_row_over_layouts_of_unlike_difficulty_has_a_wider_interval_than_its_e
     names = ["sure", "wedged"]
     episodes = benchmark({"sure": [10] * 10, "wedged": [0, 0, *[10] * 8]})
     summaries = summaries_of(episodes, LAYOUTS, names)
-    [_, row] = rows_of(summaries, names, CHANCE)[-2:]
+    [_, row] = rows_of(summaries, names, CHANCE, {})[-2:]
     assert (row.scenario, row.success.rate) == ("(all)", 0.8)
     low, high = wilson(80, 100)
     assert row.success.low is not None
@@ -61,15 +61,50 @@ def test_a_row_over_layouts_of_unlike_difficulty_has_a_wider_interval_than_its_e
 
 def test_layouts_that_are_alike_have_the_interval_of_independent_episodes() -> None:
     episodes = benchmark({"even": [8] * 10})
-    [row] = rows_of(summaries_of(episodes, LAYOUTS, ["even"]), ["even"], CHANCE)[-1:]
+    [row] = rows_of(summaries_of(episodes, LAYOUTS, ["even"]), ["even"], CHANCE, {})[-1:]
     assert (row.success.low, row.success.high) == pytest.approx(wilson(80, 100), abs=0.02)
     certain = benchmark({"even": [10] * 10})
-    [row] = rows_of(summaries_of(certain, LAYOUTS, ["even"]), ["even"], CHANCE)[-1:]
+    [row] = rows_of(summaries_of(certain, LAYOUTS, ["even"]), ["even"], CHANCE, {})[-1:]
     assert (row.success.low, row.success.high) == wilson(100, 100)  # never narrower
 
 
+def test_equal_episodes_of_a_policy_that_nothing_random_reaches_count_once() -> None:
+    """`same` succeeds in 9 of 10 layouts, with every seed alike; `fails` draws, and fails with each draw alike."""
+    names = ["same", "fails", "twin"]
+    episodes = benchmark({"same": [0, *[10] * 9], "fails": [0] * 10, "twin": [10] * 10})
+    certain = {layout: ["same", "twin"] for layout in LAYOUTS}
+    summaries = summaries_of(episodes, LAYOUTS, names)
+    rows = {(row.scenario, row.behavior): row for row in rows_of(summaries, names, CHANCE, certain)}
+    assert [rows["(all)", name].episodes for name in names] == [10, 100, 10]
+    alone, over_all = rows["layout-3", "same"], rows["(all)", "same"]
+    assert (alone.episodes, alone.success.rate, alone.success.low) == (1, 1.0, None)
+    assert (rows["layout-3", "fails"].episodes, rows["layout-3", "fails"].success.high) == (10, wilson(0, 10)[1])
+    assert over_all.success.rate == 0.9
+    assert over_all.success.low is not None
+    assert over_all.success.low <= wilson(9, 10)[0]
+    assert rows["layout-3", "twin"].paired["success"].n == 1
+    assert rows["layout-3", "fails"].paired["success"].n == 10
+    pairs = pairs_of(summaries, names, CHANCE, certain)
+    twins = {one.scenario: one for one in pairs if (one.behavior, one.against) == ("same", "twin")}
+    assert (twins["layout-0"].difference.mean, twins["layout-0"].difference.low, twins["layout-0"].p) == (
+        -1,
+        None,
+        None,
+    )
+    assert (twins["(all)"].difference.n, twins["(all)"].only_against) == (10, 1)
+    ranks = {(one.scenario, one.behavior): one for one in ranks_of(list(rows.values()), pairs)}
+    assert (ranks["layout-0", "twin"].low, ranks["layout-0", "twin"].high) == (1, 1)  # exact, so no place is open
+
+
+def test_episodes_that_differ_count_all_though_nothing_random_is_known() -> None:
+    episodes = benchmark({"some": [6] * 10})
+    certain = {layout: ["some"] for layout in LAYOUTS}
+    [*_, row] = rows_of(summaries_of(episodes, LAYOUTS, ["some"]), ["some"], CHANCE, certain)
+    assert (row.episodes, row.success.rate) == (100, 0.6)
+
+
 def test_contacts_per_hour_are_all_contacts_over_all_hours() -> None:
-    [row] = rows_of(summaries_of(benchmark({"some": [6] * 10}), LAYOUTS, ["some"]), ["some"], CHANCE)[-1:]
+    [row] = rows_of(summaries_of(benchmark({"some": [6] * 10}), LAYOUTS, ["some"]), ["some"], CHANCE, {})[-1:]
     contacts = row.metrics["contacts_per_hour"]
     assert contacts.mean == pytest.approx(3600 * 40 / (60 * 10 + 40 * 5))
     assert contacts.low is not None
@@ -82,14 +117,14 @@ def test_every_pair_of_policies_is_compared() -> None:
     episodes = benchmark({"best": [10] * 10, "middle": [7] * 10, "worst": [0] * 10})
     summaries = summaries_of(episodes, LAYOUTS, names)
     pairs = {
-        (one.behavior, one.against): one for one in pairs_of(summaries, names, CHANCE) if one.scenario == "layout-3"
+        (one.behavior, one.against): one for one in pairs_of(summaries, names, CHANCE, {}) if one.scenario == "layout-3"
     }
     assert list(pairs) == [("best", "middle"), ("best", "worst"), ("middle", "worst")]
     pair = pairs["middle", "worst"]
     assert (pair.difference.mean, pair.difference.n) == (pytest.approx(0.7), 10)
     assert (pair.only_behavior, pair.only_against, pair.p) == (7, 0, pytest.approx(2 / 2**7))
     assert pairs["best", "middle"].p == pytest.approx(0.25)  # three pairs cannot tell
-    over_all = [one for one in pairs_of(summaries, names, CHANCE) if one.scenario == "(all)"]
+    over_all = [one for one in pairs_of(summaries, names, CHANCE, {}) if one.scenario == "(all)"]
     assert [one.p for one in over_all] == [None, None, None]  # its episodes are not independent
 
 
@@ -97,8 +132,10 @@ def test_ranks_say_which_places_are_open() -> None:
     names = ["good", "like", "bad"]
     episodes = benchmark({"good": [9] * 10, "like": [9] * 10, "bad": [2] * 10})
     summaries = summaries_of(episodes, LAYOUTS, names)
-    pairs = pairs_of(summaries, names, CHANCE)
-    ranks = {one.behavior: one for one in ranks_of(rows_of(summaries, names, CHANCE), pairs) if one.scenario == "(all)"}
+    pairs = pairs_of(summaries, names, CHANCE, {})
+    ranks = {
+        one.behavior: one for one in ranks_of(rows_of(summaries, names, CHANCE, {}), pairs) if one.scenario == "(all)"
+    }
     assert [(ranks[name].rank, ranks[name].low, ranks[name].high) for name in names] == [
         (1.5, 1, 2), (1.5, 1, 2), (3, 3, 3),
     ]  # fmt: skip

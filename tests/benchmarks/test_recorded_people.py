@@ -9,7 +9,7 @@ import pytest
 
 from irsim.bridges.pedestrians.published import SHA256
 from tests.benchmarks.pedestrians import human, robot
-from tests.benchmarks.pedestrians.write import PAGE, TEXT
+from tests.benchmarks.pedestrians.write import PAGE, TEXT, with_words
 
 
 @pytest.mark.foreign
@@ -36,6 +36,13 @@ def test_the_page_has_the_words_of_its_template() -> None:
     for words, *_ in Formatter().parse(TEXT.read_text(encoding="utf-8")):
         place = shown.index(words, place) + len(words)
     assert place == len(shown)
+
+
+def test_other_words_leave_the_tables_as_they_are() -> None:
+    old, new = "Of {n} cases:\n{table}\nEnd {{x}}.", "In {n} cases\n{table}\nThe end."
+    assert with_words("Of 7 cases:\n| a |\n| b |\nEnd {x}.", old, new) == "In 7 cases\n| a |\n| b |\nThe end."
+    with pytest.raises(SystemExit, match="measure it again"):
+        with_words("Of 7 cases: none", old, new)
 
 
 def test_the_page_names_the_files_of_the_published_results() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import cast
 
 import pytest
 
@@ -17,11 +18,13 @@ from tests.benchmarks.reference.leaderboard import (
     LEFT_OUT,
     LEFT_OUT_OF_SUITES,
     PAGE,
+    certain_of,
     leaderboard,
     standings,
     unlisted_policies,
 )
 from tests.benchmarks.reference.write import (
+    ONE_ROBOT,
     PAGES,
     TABLES,
     Table,
@@ -116,6 +119,31 @@ def test_a_large_page_is_made_from_the_kept_episodes(name: str) -> None:
     assert (PAGES / f"{name}.md").read_text(encoding="utf-8") == page_of(name)
 
 
+def test_copies_of_an_episode_are_one_on_the_page_of_maps() -> None:
+    certain, policies = certain_of("maps_v2"), TABLES["maps_v2"].plan().policies
+    assert {text for own in certain.values() for text in own} == {policies["astar"], policies["jps"]}
+    known, first_seed = kept_of("maps_v2"), TABLES["maps_v2"].plan().seeds[0]
+    for (scenario, policy, seed), line in known.items():
+        first = known[scenario, policy, first_seed]
+        if policies[policy] in certain[scenario]:
+            assert line == first | {"seed": str(seed)}, (scenario, policy, seed)
+    page = (PAGES / "maps_v2.md").read_text(encoding="utf-8")
+    assert "| maze/freeze | astar | 1 | 100% | 0% | 0% | 56.10 |" in page
+    assert "| (all) | astar | 16 | 94% (72% to 100%) |" in page
+    assert "| maze/freeze | rrt_star | 10 | 0% (0% to 28%) |" in page
+
+
+@pytest.mark.parametrize("name", [name for name, table in TABLES.items() if table.protocols == ("freeze",)])
+def test_both_protocols_give_one_robot_equal_episodes(name: str, tmp_path: Path) -> None:
+    plan = TABLES[name].plan(seeds=1, scenarios=TABLES[name].quick, protocols=None)
+    lines = TABLES[name].lines(cast(SuiteResult, run_plan(plan, tmp_path / "both")))
+    rows = [{**line, "scenario": line["scenario"].rpartition("/")[0]} for line in lines]
+    half = len(rows) // 2
+    assert [line["scenario"].rpartition("/")[2] for line in lines] == ["freeze"] * half + ["yield"] * half
+    assert rows[:half] == rows[half:]
+    assert ONE_ROBOT in (PAGES / f"{name}.md").read_text(encoding="utf-8")
+
+
 def test_the_leaderboard_is_that_of_the_kept_episodes() -> None:
     assert PAGE.read_text(encoding="utf-8") == leaderboard()
 
@@ -123,10 +151,11 @@ def test_the_leaderboard_is_that_of_the_kept_episodes() -> None:
 def test_the_leaderboard_has_the_shares_and_intervals_of_the_page_of_a_suite() -> None:
     page = (PAGES / "circle_swap_v2.md").read_text(encoding="utf-8")
     freeze = [one for one in episodes_of("circle_swap_v2") if one.scenario.endswith("/freeze")]
-    for one in standings(freeze, TABLES["circle_swap_v2"].plan().policies):
+    for one in standings(freeze, TABLES["circle_swap_v2"].plan().policies, certain_of("circle_swap_v2")):
         share = one.shares[0]
-        shown = f"{share.rate:.0%} ({share.low:.0%} to {share.high:.0%})"
-        assert f"| (all)/freeze | {one.policy} | {one.episodes} | {shown} |" in page
+        [cell] = re.findall(rf"^\| \(all\)/freeze \| {one.policy} \| {one.episodes} \| ([^|]*) \|", page, re.MULTILINE)
+        shown = [float(text) for text in re.findall(r"([\d.]+)%", cell)]
+        assert shown == pytest.approx([100 * (value or 0) for value in (share.rate, share.low, share.high)], abs=0.51)
 
 
 def test_each_policy_is_in_a_table_or_left_out_for_a_reason() -> None:
@@ -143,7 +172,7 @@ def test_a_policy_leads_for_sure_only_if_its_pairs_say_so() -> None:
         return [episode_of(line, policy) for line in lines]
 
     policies = {"worse": "orca", "best": "footprint_orca"}
-    clear = standings([*episodes("orca", 30), *episodes("footprint_orca", 0)], policies)
+    clear = standings([*episodes("orca", 30), *episodes("footprint_orca", 0)], policies, {})
     assert [(one.policy, one.knows) for one in clear] == [("best", "outlines+intent"), ("worse", "circles+intent")]
     assert [share.rate for share in clear[1].shares] == [0.25, 0.75, 0.0]
     assert clear[0].behind is None
@@ -151,7 +180,7 @@ def test_a_policy_leads_for_sure_only_if_its_pairs_say_so() -> None:
     assert lead is not None
     assert lead.mean == -0.75
     assert -0.9 < (lead.low or 0) < -0.75 < (lead.high or 0) < -0.5
-    lead = standings([*episodes("orca", 1), *episodes("footprint_orca", 0)], policies)[1].behind
+    lead = standings([*episodes("orca", 1), *episodes("footprint_orca", 0)], policies, {})[1].behind
     assert lead is not None
     assert (lead.low or 0) < (lead.mean or 0) < 0.0 < (lead.high or 0)
 
@@ -162,15 +191,18 @@ def test_the_table_counts_the_kept_episodes(name: str) -> None:
     assert TABLES[name].suite in SUITES.names()
     plan = TABLES[name].plan()
     assert f"suite hash {plan.suite_hash}, run hash {plan.hash}, " in page
-    outcomes = counted(kept_lines(name))
+    outcomes, certain = counted(kept_lines(name)), certain_of(name)
     for (scenario, policy), count in outcomes.items():
         shares, *_ = re.findall(rf"^\| {re.escape(scenario)} \| {re.escape(policy)} \| (.*)$", page, re.MULTILINE)
         cells = shares.split(" | ")
         n = int(cells[0])
-        shown = [int(cell.split("%")[0]) for cell in cells[1:4]]
+        shown = [float(cell.split("%")[0]) for cell in cells[1:4]]
         placed = sum(count.values()) - count["placement-crowded"]
-        wanted = [float(f"{100 * count[name] / n:.0f}") for name in ("success", "collision", "timeout")]
-        assert (n, shown) == (placed, wanted), (scenario, policy)
+        wanted = [100 * count[name] / placed for name in ("success", "collision", "timeout")]
+        once = plan.policies[policy] in certain.get(scenario, ())
+        assert n == (1 if once else placed), (scenario, policy)
+        assert shown == pytest.approx(wanted, abs=0.51), (scenario, policy)
+        assert ("(" in cells[1]) != once, (scenario, policy)
     assert page.endswith("\n" + "\n".join([*changes(name, outcomes), source_of(name), ""]))
     assert f"Taken for granted: {GRANTED[TABLES[name].suite[-2:]]}" in page
 

@@ -142,7 +142,7 @@ def test_a_run_a_benchmark_and_a_trace_say_the_same() -> None:
     assert episode.zones == metrics.zones
     assert {zone: {key: e.mean for key, e in values.items()} for zone, values in row.zones.items()} == metrics.zones
     rows = summaries_of([episode], compared.scenarios, compared.behaviors)
-    assert rows_of(rows, compared.behaviors, compared.random)[0].zones == row.zones
+    assert rows_of(rows, compared.behaviors, compared.random, {})[0].zones == row.zones
 
 
 def test_a_result_says_what_happened_at_each_zone() -> None:

@@ -55,11 +55,11 @@ def named_engine(manifest: Manifest) -> str:
 
 def check_records(
     folder: Path, claim: Claim, result: SuiteResult, manifest: Manifest, problems: Problems
-) -> tuple[list[RunAudit], int]:
+) -> tuple[list[RunAudit], set[tuple[str, str, int]]]:
     """Audit the recorded episodes, and compare them with their rows.
 
     Returns:
-        The audits that differ, and how many records could be read.
+        The audits that differ, and scenario, policy and seed of the records that could be read.
     """
     rows = rows_of(claim, result)
     done = [key for key, row in rows.items() if row.outcome != CROWDED]
@@ -67,8 +67,8 @@ def check_records(
     given = [(one.scenario, one.policy, one.seed) for one in manifest.sample]
     if given != expected:
         problems.add("submission-run", MANIFEST, "its sample is not the one that suite, policies and seeds decide")
-        return [], 0
-    odd, sampled = list[RunAudit](), 0
+        return [], set()
+    odd, sampled = list[RunAudit](), set[tuple[str, str, int]]()
     for one, key in zip(manifest.sample, expected, strict=True):
         if f"{one.folder}/{META}" not in manifest.files:
             problems.add("submission-run", one.folder, "the manifest does not list the files of this recorded episode")
@@ -81,7 +81,7 @@ def check_records(
             odd.append(audit)
         if audit.problems:
             continue
-        sampled += 1
+        sampled.add(key)
         by = named_engine(manifest)
         for what, recorded, known in _origin(folder / one.folder, one, claim, manifest):
             problems.add("submission-origin", one.folder, what + by, given=recorded, allowed=known)

@@ -43,17 +43,19 @@ class Replay:
         drawn: Number of episodes in the sample.
         by_policy: Name of a policy -> number of its episodes that were run again.
         left: Why some episodes of the sample were not run again, in words.
+        rows: Scenario, policy and seed of the episodes that were run again.
     """
 
     salt: str = ""
     drawn: int = 0
     by_policy: Counter[str] = field(default_factory=Counter)
     left: list[str] = field(default_factory=list)
+    rows: set[tuple[str, str, int]] = field(default_factory=set)
 
     @property
     def done(self) -> int:
         """Number of episodes that were run again."""
-        return self.by_policy.total()
+        return len(self.rows)
 
 
 def replay_episodes(
@@ -98,6 +100,7 @@ def replay_episodes(
         recorded = {(one.scenario, one.policy, one.seed): folder / one.folder for one in manifest.sample}
         for (at, key), measured in zip(wanted, results, strict=True):
             replay.by_policy[key[1]] += 1
+            replay.rows.add(key)
             _compare_row(key, rows[key], episode_row(*ready.plan[at], measured), manifest, problems)
             if key in recorded:
                 _compare_trace(key, recorded[key], claim, problems)

@@ -27,7 +27,7 @@ __all__ = ["check_episodes", "check_head", "check_table", "prepared_claim"]
 _TOLERANCE = 1e-9
 _ROWS = ("rows", "pairs", "ranks", "episodes", "incidents", "notes", "engine")
 """Keys of a result that follow from its episodes or are checked elsewhere."""
-_OF_POLICIES = ("behaviors", "information", "digests", "unequal", "random", "warnings")
+_OF_POLICIES = ("behaviors", "information", "digests", "unequal", "random", "certain", "warnings")
 """Keys that depend on the policies, all of which must be here to compute them."""
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from irsim.benchmarks.assumptions import SWEPT
+from irsim.benchmarks.incidents import placed
 from irsim.benchmarks.report.rows import RANKS, policy_labels, rank_text, shown_ranks
 from irsim.common.text import markdown_code, markdown_text, plural
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion, SuiteResult
@@ -52,7 +54,8 @@ SHOWN = frozenset(key for columns in (_COLUMNS, _SOMETIMES, _ABOVE_ZERO, _DIFFER
 """Keys of all metrics that a report can show over episodes."""
 INTERVALS = (
     "Intervals are 95 %: Wilson's for shares, Newcombe's for their differences, bootstrap for means. Rows over several "
-    "scenarios count each episode once, and their intervals resample scenarios, too. Times count robots that arrived."
+    "scenarios count each episode once, and their intervals resample scenarios, too. A mean without an interval has no "
+    "spread: all its values are equal, or there is only one. Times count robots that arrived."
 )
 """The intervals, and how many episodes count."""
 _CLEARANCE = "Contacts count within steps, but clearance is the smallest distance at the ends of steps."
@@ -148,7 +151,7 @@ def about_of(result: BenchmarkResult) -> list[str]:
         return []
     lines = [result.about] if result.about else []
     lines += ["Sources: " + "; ".join(result.sources)] if result.sources else []
-    limits = sorted({episode.time_limit for episode in result.episodes})
+    limits = sorted({episode.time_limit for episode in placed(result.episodes)})
     horizon = f"The horizon is {' or '.join(f'{limit:g}' for limit in limits)} s" if limits else ""
     ends = {
         "done": "an episode ends when every robot has arrived or stopped",
@@ -258,13 +261,19 @@ def _is_above_zero(estimate: Estimate | None) -> bool:
 
 def _share(proportion: Proportion) -> str:
     if proportion.low is None or proportion.high is None:
-        return f"{proportion.rate:.0%}"
-    return f"{proportion.rate:.0%} ({proportion.low:.0%} to {proportion.high:.0%})"
+        return _percent(proportion.rate)
+    return f"{_percent(proportion.rate)} ({_percent(proportion.low)} to {_percent(proportion.high)})"
+
+
+def _percent(share: float) -> str:
+    """A share in %, with a decimal where it would look like none or all and is neither."""
+    text = f"{share:.0%}"
+    return f"{share:.1%}" if text in ("0%", "100%") and share not in (0.0, 1.0) else text
 
 
 def _mean(estimate: Estimate | None, form: str = ".2f") -> str:
     if estimate is None or estimate.mean is None:
         return ""
-    if estimate.low is None or estimate.high is None:
+    if estimate.low is None or estimate.high is None or math.isclose(estimate.low, estimate.high, abs_tol=1e-12):
         return f"{estimate.mean:{form}}"
     return f"{estimate.mean:{form}} ({estimate.low:{form}} to {estimate.high:{form}})"

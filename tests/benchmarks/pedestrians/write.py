@@ -1,12 +1,16 @@
 """Writes the page on recorded pedestrians: ``python -m tests.benchmarks.pedestrians.write FOLDER``.
 
 FOLDER has ``eth_obsmat.txt``, ``hotel_obsmat.txt`` (ETH) and ``trajectron_zara01.txt`` (UCY, rows ``frame id x y``).
+``--words OLD``, where OLD is the template of the page as it is, measures nothing: the tables of the page stay, and its
+words are taken from ``page.md``.
 """
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
+from string import Formatter
 
 from tests.benchmarks.pedestrians import corridor, fitted, human, robot
 
@@ -27,7 +31,28 @@ def page(data: Path) -> str:
     return text.format(**parts)
 
 
-if __name__ == "__main__":
+def with_words(shown: str, old: str, new: str) -> str:
+    """A page with other words around the same tables.
+
+    Args:
+        shown: The page.
+        old: Its template.
+        new: The template with the other words.
+    """
+    pattern = "".join(
+        re.escape(words) + (f"(?P<{name}>.*?)" if name else "") for words, name, *_ in Formatter().parse(old)
+    )
+    match = re.fullmatch(pattern, shown, re.DOTALL)
+    if match is None:
+        raise SystemExit("the page does not have the words of the old template: measure it again")
+    return new.format(**match.groupdict())
+
+
+if __name__ == "__main__" and sys.argv[1] == "--words":
+    words = TEXT.read_text(encoding="utf-8")
+    before = Path(sys.argv[2]).read_text(encoding="utf-8")
+    PAGE.write_text(with_words(PAGE.read_text(encoding="utf-8"), before, words), encoding="utf-8")
+elif __name__ == "__main__":
     folder = Path(sys.argv[1])
     print(human.files_table(folder))
     PAGE.write_text(page(folder), encoding="utf-8")

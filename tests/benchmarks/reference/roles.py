@@ -21,8 +21,9 @@ _ABOUT = (
     "Each row is a policy, each column says what the others follow. `people` are round bodies of radius 0.25 m that "
     "move freely and follow `sfm` at up to 1 m/s; all others are the bodies of `random_polygons_v2`, with limited "
     "acceleration. A robot that touches another stops for good, and the episode goes on. Robots that have arrived make "
-    "room. Shares are of the robots of a role, where each episode counts once; intervals are 95 % (Wilson's for one "
-    "robot, else bootstrap over episodes)."
+    "room. Shares are of the robots of a role, where each episode counts once; intervals are 95 %: Wilson's for one "
+    "robot, else bootstrap over episodes. Where all robots of all episodes do the same, a bootstrap has no spread, and "
+    "the interval is Wilson's for as many episodes."
 )
 _SHOWN = """\
 - `orca` and `avocado`, alone in any of the seven crowds, arrive in all 210 episodes. `footprint_orca`, which touches
@@ -75,7 +76,9 @@ class _Cells:
     def of(self, kind: str, crowd: str, policy: str, role: str) -> dict[str, Estimate]:
         """Estimates of a role by key."""
         columns = {key: self._values[f"{kind}-{crowd}", policy][f"{role}_{key}"] for key in _KEYS}
-        return estimates(columns, _SHARES if kind == "one" and role == "probe" else ())
+        alone = kind == "one" and role == "probe"
+        shares = [key for key in _SHARES if alone or set(columns[key]) in ({0.0}, {1.0})]
+        return estimates(columns, shares)
 
     def mean(self, kind: str, policy: str, role: str, key: str) -> float:
         """Mean over the crowds, in %."""

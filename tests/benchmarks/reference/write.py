@@ -38,6 +38,7 @@ from tests.benchmarks.reference.kept import (
 from tests.benchmarks.reference.roles import HEAD, page
 
 __all__ = [
+    "ONE_ROBOT",
     "PAGES",
     "TABLES",
     "Table",
@@ -51,6 +52,11 @@ __all__ = [
     "result_of",
 ]
 
+ONE_ROBOT = (
+    "One robot drives, and its episode ends when it has arrived. Under yield, robots that have arrived make room, so "
+    "every episode is equal to the one under freeze, and yield is not listed."
+)
+"""Note of pages whose scenarios have one robot each."""
 PAGES = FOLDER.parents[2] / "skills" / "irsim-benchmark" / "results"
 
 
@@ -65,7 +71,7 @@ class Table:
         again: Names of the scenarios that the slow tests run again; None: all.
         by_role: Whether ``roles.py`` makes the page.
         seeds: Number of seeds; None: the suite's.
-        protocols: The protocols; None: the suite's.
+        protocols: The protocols; None: the suite's. With ``freeze`` alone one robot drives.
     """
 
     suite: str
@@ -92,6 +98,8 @@ def _plan_of(suite: str, policies: Any, seeds: int | None, protocols: Any) -> Pl
     return suite_plan(suite, policies=policies, seeds=seeds, protocols=protocols)
 
 
+_ADDED = ("avocado", "footprint_orca", "rvo")
+"""Policies that suites name and do not run by themselves."""
 TABLES = {
     "random_polygons_v1": Table("random_polygons_v1", ("robots-5", "robots-10")),
     "table_2": Table(
@@ -128,8 +136,20 @@ TABLES = {
         "circle_swap_v2", ("diff-8",), ("orca", "rvo", "sfm", "dash", "avocado", "footprint_orca"), ("diff-8", "omni-8")
     ),
     "social_v2": Table("social_v2", ("head-on",), again=("head-on", "doorway")),
-    "clutter_v2": Table("clutter_v2", ("posts-15",), again=("posts-15",)),
-    "crowdnav_circle_v2": Table("crowdnav_circle_v2", ("circle-invisible-5",), again=("circle-invisible-5",)),
+    "clutter_v2": Table(
+        "clutter_v2",
+        ("posts-15",),
+        ("follow", "orca", "sfm", "dash", *_ADDED, "goal_lidar", "corridor_social"),
+        again=("posts-15",),
+        protocols=("freeze",),
+    ),
+    "crowdnav_circle_v2": Table(
+        "crowdnav_circle_v2",
+        ("circle-invisible-5",),
+        ("orca", "orca-margin", "dash", *_ADDED),
+        again=("circle-invisible-5",),
+        protocols=("freeze",),
+    ),
     "crowdnav_circle_v2_networks": Table(
         "crowdnav_circle_v2",
         ("circle-invisible-5",),
@@ -170,7 +190,8 @@ def page_of(name: str) -> str:
     if TABLES[name].by_role:
         return f"{page(kept_lines(name), TABLES[name].plan())}\n{source_of(name)}\n"
     counts = counted(kept_of(name).values())
-    return "\n".join([markdown(result_of(name)), *changes(name, counts), source_of(name), ""])
+    notes = [ONE_ROBOT] if TABLES[name].protocols == ("freeze",) else []
+    return "\n".join([markdown(result_of(name), notes), *changes(name, counts), source_of(name), ""])
 
 
 def changed_lines(name: str, made: Iterable[Line]) -> list[str]:
