@@ -7,12 +7,13 @@ of the skills, and of five pages written by hand in ``hand/``. Sphinx lays it ou
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from commands import command_pages
@@ -35,6 +36,8 @@ HERE = Path(__file__).resolve().parent
 BY_HAND = ("index", "start/robotics", "start/learning", "start/agents", "start/from-ir-sim")
 """Pages of ``hand/``; the last one ends with the table of differences."""
 _START = BY_HAND[1:]
+MEANINGS = 3
+"""How many places the search shows first for the name of a key."""
 
 
 def write_source(folder: Path) -> list[Page]:
@@ -146,11 +149,32 @@ def _indexes() -> Iterator[Page]:
     yield _index("reference/index", "Reference", "Generated from the program itself.", parts)
 
 
-def lay_out(source: Path, html: Path, *, jobs: str = "2") -> None:
-    """Make pages of the Markdown; a warning is an error."""
+def names_of(pages: list[Page]) -> dict[str, list[tuple[str, str, str]]]:
+    """Names that people look for, as keys, components and codes -> page, its title and anchor of each meaning."""
+    names = dict[str, list[tuple[str, str, str]]]()
+    titles = {page.path: page.title for page in pages}
+    places = dict.fromkeys(where for where in whereabouts().values() if "#" in where)
+    for page in pages:
+        if page.path.startswith("reference/"):
+            places |= dict.fromkeys(
+                f"{page.path}#{name}" for name in re.findall(r'<span id="([^"]*)"></span>', page.text)
+            )
+    for place in sorted(places, key=lambda place: (place.count("."), list(titles).index(place.partition("#")[0]))):
+        path, _, name = place.partition("#")
+        for said in dict.fromkeys((name.lower(), name.rpartition(".")[2].lower())):
+            names.setdefault(said, []).append((path, titles[path], name))
+    return {said: found[:MEANINGS] for said, found in sorted(names.items())}
+
+
+def lay_out(source: Path, html: Path, names: Mapping[str, object], *, jobs: str = "2") -> None:
+    """Make pages of the Markdown, whose search knows the names; a warning is an error."""
     shutil.rmtree(html, ignore_errors=True)
+    scorer = source.parent / "search.js"
+    ranking = (HERE / "theme/search.js").read_text(encoding="utf-8")
+    scorer.write_text(f"const NAMES = {json.dumps(names, separators=(',', ':'))};\n{ranking}", encoding="utf-8")
     command = [sys.executable, "-m", "sphinx", "-b", "html", "-c", str(HERE / "theme"), "-q", "-W", "--keep-going"]
     environment = {**os.environ, "SOURCE_DATE_EPOCH": "0", "PYTHONHASHSEED": "0", "IRSIM_SITE_RELEASE": version()}
+    environment["IRSIM_SITE_SCORER"] = str(scorer)
     done = subprocess.run(
         [*command, "-j", jobs, "-d", str(source.parent / "doctrees"), str(source), str(html)],
         env=environment,
@@ -183,7 +207,7 @@ def build(out: Path, *, previous: Path | None = None) -> None:
     source, html = out / "source", out / "html"
     pages = write_source(source)
     shutil.rmtree(out / "doctrees", ignore_errors=True)
-    lay_out(source, html)
+    lay_out(source, html, names_of(pages))
     for path in sorted(source.rglob("*")):
         if path.is_file() and path.suffix != ".md":
             target = html / path.relative_to(source)

@@ -16,10 +16,10 @@ context.window = context;
 for (const name of ["_static/language_data.js", "_static/searchtools.js", "searchindex.js"]) {
   vm.runInContext(readFileSync(join(html, name), "utf8"), context, { filename: name });
 }
-vm.runInContext("rankByRarity(Search)", context);
+vm.runInContext("rankByRarity(Search); beginWithNames(Search);", context);
 const questions = JSON.parse(readFileSync(0, "utf8"));
 context.questions = questions;
 const found = vm.runInContext(
   `questions.map((one) => { const asked = Search._parseQuery(one);
-     return Search._performSearch(...asked).reverse().map((item) => item[0]); })`, context);
+     return Search._performSearch(...asked).reverse().map((item) => item[0] + (item[2] || "")); })`, context);
 console.log(JSON.stringify(found));

@@ -13,12 +13,18 @@ from tests.site.questions import QUESTIONS
 pytestmark = [pytest.mark.site, pytest.mark.one_python]
 
 
-def test_the_first_three_pages_answer_each_question(html: Path) -> None:
+def answers(html: Path, questions: list[str]) -> list[list[str]]:
+    """Pages, with anchors, that the search finds for each question, best first."""
     script = Path(__file__).with_name("search.mjs")
-    asked = json.dumps(list(QUESTIONS))
-    done = subprocess.run(["node", str(script), str(html)], input=asked, capture_output=True, text=True, check=False)
+    command = ["node", str(script), str(html)]
+    done = subprocess.run(command, input=json.dumps(questions), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    firsts = [list(dict.fromkeys(pages))[:3] for pages in json.loads(done.stdout)]
+    return json.loads(done.stdout)
+
+
+def test_the_first_three_pages_answer_each_question(html: Path) -> None:
+    found = answers(html, list(QUESTIONS))
+    firsts = [list(dict.fromkeys(place.partition("#")[0] for place in places))[:3] for places in found]
     wrong = {
         question: first
         for (question, right), first in zip(QUESTIONS.items(), firsts, strict=True)
@@ -26,3 +32,20 @@ def test_the_first_three_pages_answer_each_question(html: Path) -> None:
     }
     assert len(QUESTIONS) == 20
     assert wrong == {}
+
+
+def test_a_name_leads_first_to_where_it_is_explained(html: Path) -> None:
+    right = {
+        "vel_max": "reference/robot#robot.vel_max",
+        "`range_max`": "reference/sensor/lidar2d#sensor.lidar2d.range_max",
+        "what does unknown-key mean?": "reference/codes#unknown-key",
+        "spl": "reference/metrics#spl",
+        "neighborDist": "reference/behavior/orca#behavior.orca.neighbordist",
+    }
+    found = dict(zip(right, answers(html, list(right)), strict=True))
+    assert {question: places[0].lower() for question, places in found.items()} == right
+    text = {
+        name: (html / f"{name}.html").read_text(encoding="utf-8") for name in ("reference/robot", "reference/codes")
+    }
+    assert 'id="robot.vel_max"' in text["reference/robot"]
+    assert 'id="unknown-key"' in text["reference/codes"]

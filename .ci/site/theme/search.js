@@ -1,12 +1,29 @@
 // Ranks pages by the words of a question: rare words, words of titles and words of short pages count more, and no word
-// is required.
+// is required. A name in the question, as `vel_max` or `unknown-key`, leads to where it is explained: the build puts
+// `NAMES` before this text.
 var Scorer = {
   objNameMatch: 11, objPartialMatch: 6, objPrio: {}, objPrioDefault: 0,
   title: 15, partialTitle: 7, term: 5, partialTerm: 2,
 };
 
 // Pages load this file after the script of the search, tests before it.
-if (typeof Search !== "undefined") rankByRarity(Search);
+if (typeof Search !== "undefined") {
+  rankByRarity(Search);
+  beginWithNames(Search);
+}
+
+function beginWithNames(search) {
+  const perform = search._performSearch;
+  search._performSearch = (query, ...rest) => {
+    const asked = query.trim().toLowerCase();
+    const words = asked.split(/\s+/).map((word) => word.replace(/^[`'"]+|[`'"?:,.]+$/g, ""));
+    const names = words.filter((word) => word === asked || /[a-z][._-][a-z]/.test(word));
+    const found = [...new Set(names)].flatMap((name) => (Object.hasOwn(NAMES, name) ? NAMES[name] : []));
+    const first = found.map(([page, title, anchor]) =>
+      [page, `${anchor} (${title})`, `#${anchor}`, null, Infinity, search._index.filenames[search._index.docnames.indexOf(page)], "title"]);
+    return perform(query, ...rest).concat(first.reverse());  // The last one is shown first.
+  };
+}
 
 function rankByRarity(search) {
   const inTitle = 4, beginsTitle = 2.5, inHeading = 1.5, partly = 0.4, shortest = 4;
