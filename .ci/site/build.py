@@ -128,7 +128,15 @@ def _indexes() -> Iterator[Page]:
     yield _index("bridges/index", "Bridges", about, [_about(page) for page in bridges])
     cases = ["evals/README", "evals/write-a-case"]
     yield _index("evals/index", "Evaluate agents", "Tasks that measure agents.", [_about(page) for page in cases])
-    project = ["CHANGELOG", "CONTRIBUTING", "AGENTS", "irsim/core/README", "irsim/compat/README", "tests/speed/README"]
+    project = [
+        "CHANGELOG",
+        "CONTRIBUTING",
+        "RELEASING",
+        "AGENTS",
+        "irsim/core/README",
+        "irsim/compat/README",
+        "tests/speed/README",
+    ]
     yield _index("project/index", "Project", "How irsim is made.", [_about(page) for page in project])
     kinds = ("behavior", "kinematics", "sensor", "shape", "distribution", "map", "planner", "bridge")
     parts = [
@@ -159,7 +167,10 @@ def names_of(pages: list[Page]) -> dict[str, list[tuple[str, str, str]]]:
             places |= dict.fromkeys(
                 f"{page.path}#{name}" for name in re.findall(r'<span id="([^"]*)"></span>', page.text)
             )
-    for place in sorted(places, key=lambda place: (place.count("."), list(titles).index(place.partition("#")[0]))):
+    for place in sorted(
+        places,
+        key=lambda place: (place.count("."), len(place.partition("#")[2]), list(titles).index(place.partition("#")[0])),
+    ):
         path, _, name = place.partition("#")
         for said in dict.fromkeys((name.lower(), name.rpartition(".")[2].lower())):
             names.setdefault(said, []).append((path, titles[path], name))

@@ -22,6 +22,7 @@ _OTHERS = {
     "README.md": "irsim on one page",
     "CHANGELOG.md": "Changelog",
     "CONTRIBUTING.md": "Contributing",
+    "RELEASING.md": "Releasing",
     "AGENTS.md": "Guide for coding agents",
     "evals/README.md": "How agents are evaluated",
     "evals/write-a-case.md": "Write a case",

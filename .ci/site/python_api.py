@@ -50,6 +50,8 @@ def _names(module: str) -> list[str]:
 
 def _object(module: str, name: str) -> Any:
     result = _module(module).members[name]
+    if result.is_module:  # A package has the name of a function that the module imports: `irsim.episodes`.
+        result = _package()[_module(module).imports[name].removeprefix("irsim.")]
     return result.final_target if result.is_alias else result
 
 
