@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import tempfile
 from dataclasses import dataclass
@@ -25,9 +26,13 @@ from irsim.benchmarks.stored import read_plan
 from irsim.common.files import code_of, write_atomically
 from irsim.common.text import plural
 from irsim.diagnostics.errors import ScenarioError
+from irsim.episodes.opening import reproduce_command
+from irsim.results.benchmark import SuiteResult
 from irsim.runs.files import RunError
 from irsim.runs.replay.export import replay
+from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.limits import DEFAULT_LIMITS
+from irsim.scenario.perturbation import perturbation_text
 
 if TYPE_CHECKING:
     from irsim.policies.policy import Policy
@@ -104,7 +109,21 @@ def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: Bench
     name = f"{words[-MAX_NAME:]}-{one.seed}.html"
     replayed = _replay(scenario, one, plan, policy, folder / REPLAYS / name)
     caption = f"seed {one.seed}: {_how_it_failed(one, replayed)} ({one.scenario}, {label})"
-    return Shown(caption, png, "" if replayed is None else f"{REPLAYS}/{name}")
+    return Shown(caption, png, "" if replayed is None else f"{REPLAYS}/{name}", _command(plan, one, result))
+
+
+def _command(plan: Plan, one: EpisodeRow, result: BenchmarkResult) -> str:
+    """The command that runs and records an episode again, in the folder in which the benchmark was started."""
+    path, policy, perturb = one.scenario, one.behavior, plan.perturb
+    if isinstance(result, SuiteResult) and plan.suite is not None:
+        suite = shlex.split(result.reproduce)[2]  # as the user named it: irsim benchmark SUITE …
+        path = f"{suite}/{one.scenario}"
+        policy = next(name for name, text in result.policies.items() if text == one.behavior)
+        perturb = perturb if perturb != [perturbation_text(item) for item in plan.suite.perturb] else []
+    extra = [] if one.behavior == AS_WRITTEN else ["--policy", policy]
+    extra += [word for text in perturb for word in ("--perturb", text)]
+    file = None if path.startswith("(text") else path
+    return reproduce_command("run", file, one.seed, plan.steps, plan.strict, plan.imports, [*extra, "--record"])
 
 
 def _how_it_failed(one: EpisodeRow, replayed: RunResult | None) -> str:

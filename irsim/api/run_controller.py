@@ -49,7 +49,17 @@ def episodes(
 
     ::
 
-        from controller import act          # in a file of its own: def act(env): return [0.5, 0.0]
+        import math                         # controller.py: turn to the goal, then drive
+
+        def act(env):
+            (x, y, heading), (to_x, to_y) = env.robot.state[:3, 0], env.robot.goal[:2, 0]
+            turn = math.remainder(math.atan2(to_y - y, to_x - x) - heading, math.tau)
+            return [0.0 if abs(turn) > 0.5 else 1.0, 2 * turn]
+
+    ::
+
+        import irsim
+        from controller import act
 
         result = irsim.episodes("hall.yaml", act, seeds=100)
         result.to_pandas()                  # one row per step and object; "run" has the seed
@@ -117,14 +127,17 @@ def episodes(
     crowded = [seed for seed, one in zip(chosen, answers, strict=True) if one["run"] is None]
     for run in runs:
         run._again = again  # the recordings last as long as one of the results
-    failed = failed_seeds(runs)
+    failed, same = failed_seeds(runs), len(runs) > 1 and all(run.robots == runs[0].robots for run in runs)
+    summary = seeds_summary(runs, failed, crowded)
+    if same:
+        summary += "; all are the same, as nothing is random in the scenario or the controller"
     return RunsResult(
         scenario=str(scenario),
-        summary=seeds_summary(runs, failed, crowded),
+        summary=summary,
         failed=failed,
         crowded=crowded,
         not_run=[],
-        same=False,
+        same=same,
         episodes=runs,
         warnings=[],
         version=version(),

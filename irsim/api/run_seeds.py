@@ -44,7 +44,7 @@ def run_seeds(
     Args:
         path: Scenario file, or ``SUITE/SCENARIO``.
         text: Text of the scenario, instead of ``path``.
-        seeds: Their number, or the seeds, such as ``[1, 4]``, ``0..19`` or ``1,4``.
+        seeds: Their number, or the seeds, such as ``[1, 4]``, ``0-19`` or ``1,4``.
         wall_s: Computing time [s] in which no further episode begins that would not end in it.
         strict: Refuse what IR-SIM would ignore.
         limits: Limits of the loader and of each run.

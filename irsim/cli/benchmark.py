@@ -80,8 +80,8 @@ def benchmark(
         str,
         typer.Option(
             metavar="N|LIST",
-            help="Number of seeds from 0, or a list of seeds: 20, 5-9, 1,4,7. Of a suite: the number of its seeds, "
-            "from its first one on, or other seeds.",
+            help="The seeds: their number from 0, or a list of seeds: 20, 5-9, 1,4,7. Of a suite: the number of its "
+            "seeds, from its first one on, or other seeds.",
             show_default="10, or the seeds of a suite",
         ),
     ] = "",

@@ -26,7 +26,7 @@ Settings = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help="An option, such as height=1.2 or frame=habitat_yup; may be repeated.",
+        help="Set KEY to VALUE, an option, such as height=1.2 or frame=habitat_yup. Repeatable.",
         show_default=False,
     ),
 ]

@@ -27,7 +27,7 @@ def convert(
         typer.Option(
             "--set",
             metavar="KEY=VALUE",
-            help="An option of the kind, such as license=MIT (irsim describe convert). Repeatable.",
+            help="Set KEY to VALUE, an option of the kind, such as license=MIT (irsim describe convert). Repeatable.",
             show_default=False,
         ),
     ] = None,

@@ -12,7 +12,7 @@ from irsim.bridges.export.export import export_run
 from irsim.bridges.export.registry import format_names
 from irsim.cli.guard import again, going_on
 from irsim.cli.options import Json
-from irsim.cli.output import console, print_json, progress, show_written
+from irsim.cli.output import console, print_json, progress, show_written, size_text
 from irsim.common.text import plural
 from irsim.policies.converters.convert import parse_options
 
@@ -69,7 +69,7 @@ def export(
         typer.Option(
             "--set",
             metavar="KEY=VALUE",
-            help="An option of the format, such as height=1.2 of cameras; may be repeated.",
+            help="Set KEY to VALUE, an option of the format, such as height=1.2 of cameras. Repeatable.",
             show_default=False,
         ),
     ] = None,
@@ -97,7 +97,7 @@ def export(
     if json_output:
         print_json(result)
         return
-    size = f"{result.bytes / 1e6:.2f} MB" if result.bytes >= 1e5 else f"{result.bytes / 1e3:.0f} kB"
+    size = size_text(result.bytes)
     count = f"{len(result.run_ids)} runs, " if len(result.run_ids) > 1 else ""
     who = plural(len(result.objects), "object")
     show_written(result.file, f"{size}: {count}{who}, {result.steps} steps")

@@ -29,6 +29,7 @@ __all__ = [
     "progress",
     "show_written",
     "silence_stdout",
+    "size_text",
 ]
 
 OUTCOME_COLORS = {"success": "green", "collision": "red", "timeout": "yellow"}
@@ -111,7 +112,7 @@ def show_written(files: str | Path | Sequence[str], about: str = "", *, stderr: 
 
     Args:
         files: One file or folder, or several; names below the current directory are shortened.
-        about: Their content.
+        about: Their content; default: the size of the files.
         stderr: Print to standard error instead of standard output.
     """
     from rich.text import Text
@@ -120,7 +121,14 @@ def show_written(files: str | Path | Sequence[str], about: str = "", *, stderr: 
     here = os.getcwd() + os.sep
     shown = ", ".join(name.removeprefix(here) for name in names)
     out = console(stderr=stderr)
+    if not about and all(map(os.path.isfile, names)):
+        about = size_text(sum(map(os.path.getsize, names)))
     out.print(Text.assemble("wrote ", (shown, "bold"), f" ({about})" if about else ""), soft_wrap=True)
+
+
+def size_text(size: int) -> str:
+    """The size of a file [bytes] in words: ``0.99 MB``, ``12 kB``."""
+    return f"{size / 1e6:.2f} MB" if size >= 1e5 else f"{max(size / 1e3, 1):.0f} kB"
 
 
 def silence_stdout() -> None:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from irsim.cli.options import Json
-from irsim.cli.output import console, print_json, progress, show_written
+from irsim.cli.output import console, print_json, progress, show_written, size_text
 from irsim.runs.files import RunError
 from irsim.runs.replay.export import replay as write
 
@@ -44,7 +44,7 @@ def replay(
         print_json(result)
         return
     thinned = f", every {result.every} steps" if result.every > 1 else ""
-    size = f"{result.bytes / 1e6:.2f} MB" if result.bytes >= 1e5 else f"{result.bytes / 1e3:.0f} kB"
+    size = size_text(result.bytes)
     show_written(result.file, f"{size}, steps 0 to {result.last_step}{thinned}")
     for note in result.notes:
         console().print(f"note: {note}", style="yellow")

@@ -43,7 +43,7 @@ def run(
         str | None,
         typer.Option(
             metavar="SEEDS",
-            help="Run an episode for each of several seeds: their number from 0, or the seeds: 3, 0..19, 1,4,7.",
+            help="Run an episode for each of several seeds: their number from 0, or a list of seeds: 20, 5-9, 1,4,7.",
             show_default=False,
         ),
     ] = None,

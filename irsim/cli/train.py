@@ -76,7 +76,9 @@ def train(
     options: Annotated[
         list[str] | None,
         typer.Option(
-            "--set", metavar="KEY=VALUE", help=f"Another setting; may be repeated. {SETTINGS} {SARL_SETTINGS}"
+            "--set",
+            metavar="KEY=VALUE",
+            help=f"Set KEY to VALUE, another setting. Repeatable. {SETTINGS} {SARL_SETTINGS}",
         ),
     ] = None,
     threads: Annotated[int, typer.Option("--threads", min=1, help="Threads of simulation and torch.")] = 1,

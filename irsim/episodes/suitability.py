@@ -15,14 +15,25 @@ from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
 import irsim._core as core
-from irsim.common.text import plural
-from irsim.diagnostics.diagnostic import Diagnostic, Path
+from irsim.common.text import clean, plural
+from irsim.diagnostics.diagnostic import Diagnostic, Path, suggestion
+from irsim.policies.catalog import UnknownPolicyError, policy_names
 from irsim.policies.scene_cards import SCENE_CARDS, OptionValues, SceneCard, Span
 from irsim.scenario.resolve.body_size import SizedBody, SizedShape, has_fixed_shape, reach_of
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.scenario.yaml.rewrite import yaml_flow
 
-__all__ = ["UNSUITED", "Misfit", "Scene", "Suited", "law_findings", "misfits_of", "suited_policies", "unsuited"]
+__all__ = [
+    "UNSUITED",
+    "Misfit",
+    "Scene",
+    "Suited",
+    "check_policy_name",
+    "law_findings",
+    "misfits_of",
+    "suited_policies",
+    "unsuited",
+]
 
 UNSUITED = "policy-unsuited"
 """Code of the warning about a policy outside its card."""
@@ -272,6 +283,17 @@ def _line(name: str, card: SceneCard, options: OptionValues | None) -> str:
         return f"behavior: {yaml_flow({'name': name, **(card.options if options is None else options)})}"
     lidar = "" if card.lidar is None else f"  # its robots carry sensors: [{yaml_flow(card.lidar)}]"
     return f"irsim run FILE --policy {name}{lidar}"
+
+
+def check_policy_name(policy: str) -> None:
+    """Check that a policy has this name, without opening it.
+
+    Raises:
+        UnknownPolicyError: None has; the message names the nearest one.
+    """
+    if policy not in (known := policy_names()):
+        fix = suggestion(policy, known, "irsim policies lists them")
+        raise UnknownPolicyError(f"there is no policy {clean(policy)!r}", fix)
 
 
 def unsuited(policy: str, scenario: ResolvedScenario, path: Path = ("robot",)) -> list[Diagnostic]:

@@ -70,10 +70,15 @@ PYTHON: dict[str, Guide] = {
         "yours, or an object that can be called, on all cores. It returns an action for env.step, or None to let "
         "behaviors drive. Seeds for parallel work are one number per episode, so the result is the same to the last "
         "bit with any workers: each episode starts with a fresh copy of the controller; draw from env.rng, and keep "
-        "nothing in variables of a module. The controller must be in a module that other processes import (or "
-        "workers=1). Every step is recorded: result.to_pandas() has a row per step and object, "
+        "nothing in variables of a module. Where nothing is random, all episodes are equal, and result.same is true. "
+        "The controller must be in a module that other processes import (or workers=1). Every step is recorded: "
+        "result.to_pandas() has a row per step and object, "
         "result.to_pandas('robots') one per episode and robot, and result.episodes[0].replay() plays one.",
-        "import irsim\nfrom controller import act   # controller.py: def act(env): return [0.5, 0.0]\n\n"
+        "# controller.py: turn to the goal, then drive\nimport math\n\ndef act(env):\n"
+        "    (x, y, heading), (to_x, to_y) = env.robot.state[:3, 0], env.robot.goal[:2, 0]\n"
+        "    turn = math.remainder(math.atan2(to_y - y, to_x - x) - heading, math.tau)\n"
+        "    return [0.0 if abs(turn) > 0.5 else 1.0, 2 * turn]\n\n"
+        "# the program\nimport irsim\nfrom controller import act\n\n"
         "result = irsim.episodes('scenario.yaml', act, seeds=20)\nprint(result.summary)\n"
         "print(result.to_pandas('robots')[['seed', 'outcome', 'time_to_goal']])",
         (

@@ -286,7 +286,7 @@ class RunsResult(Result):
     not_run: list[int]
     """Seeds for which there was no time."""
     same: bool
-    """Whether nothing is random, so that one episode stands for all seeds."""
+    """Whether nothing is random, so that one episode stands for all seeds, and others were not run or are equal."""
     episodes: list[RunResult]
     """The episodes, in the order of the seeds."""
     warnings: list[Finding]

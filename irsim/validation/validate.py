@@ -14,6 +14,7 @@ from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.diagnostics.errors import PlacementError
 from irsim.episodes.rounds import when_it_ends
 from irsim.episodes.scene_summary import counts_of, in_words
+from irsim.episodes.suitability import check_policy_name
 from irsim.results.findings import Finding
 from irsim.results.validation import Fix, ScenarioDiff, ValidationReport
 from irsim.scenario.autofix import repair_text
@@ -57,8 +58,11 @@ def validate(
 
     Raises:
         ScenarioNotFoundError: There is no such file.
+        UnknownPolicyError: No policy has that name.
         ValueError: Neither or both of ``path`` and ``text`` are given, or both of ``base`` and ``base_text``.
     """
+    if policy is not None:
+        check_policy_name(policy)
     most = limits or DEFAULT_LIMITS
     checks = partial(feasibility_findings, policy=policy)
     reading = read(document_of(path, text, limits), strict=strict, limits=most, feasibility=checks)

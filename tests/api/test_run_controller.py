@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import threading
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import irsim
+from irsim.api.run_controller import episodes
 from irsim.benchmarks import pool
 from irsim.diagnostics.errors import InputError, PolicyError, ScenarioNotFoundError
+from irsim.lookup.python_guides import PYTHON
 from irsim.runs.files import RunError
 from irsim.runs.reading import open_run
 from tests.api import controllers
@@ -53,6 +56,32 @@ def test_an_episode_begins_with_a_fresh_controller(scene: Path) -> None:
     [first, second] = irsim.episodes(scene, controllers.Counting(), seeds=[5, 6], workers=1).episodes
     traces = [open_run(Path(run.artifacts["run.json"]).parent).trace() for run in (first, second)]
     np.testing.assert_array_equal(traces[0].control[1:4, 0, 1], traces[1].control[1:4, 0, 1])
+
+
+def test_the_documented_controller_drives_to_its_goal(
+    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    head, _, program = (PYTHON["episodes"].example or "").partition("# the program\n")
+    for line in head.splitlines()[3:]:
+        assert line.strip() in str(episodes.__doc__)
+    scene.rename("scenario.yaml").write_text(SCENE.replace("time_limit: 3", "time_limit: 30"), encoding="utf-8")
+    (tmp_path / "goal_seeker.py").write_text(head, encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    names: dict[str, Any] = {}
+    lines = program.replace("from controller", "from goal_seeker").replace("seeds=20", "seeds=4").splitlines()
+    exec("\n".join(line for line in lines if "to_pandas" not in line), names)
+    assert names["result"].summary == "4 of 4 episodes succeeded"
+    assert not names["result"].same
+
+
+def test_episodes_without_randomness_say_that_they_are_the_same(scene: Path) -> None:
+    fixed = SCENE.replace(
+        "distribution: {name: random, range_low: [1, 1, -3], range_high: [11, 11, 3]}", "state: [1, 1]"
+    )
+    scene.write_text(fixed.replace(", noise: true", ""), encoding="utf-8")
+    result = irsim.episodes(scene, controllers.failing, seeds=2, workers=1)
+    assert result.same
+    assert result.summary.endswith("all are the same, as nothing is random in the scenario or the controller")
 
 
 def test_recordings_are_kept_where_one_asks(scene: Path) -> None:

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import csv
+import json
+import re
+import shlex
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -15,6 +19,7 @@ from irsim.benchmarks.comparison import benchmark
 from irsim.benchmarks.report.charts import charts
 from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.report.page import page
+from irsim.benchmarks.report.rows import worst_episodes
 from irsim.benchmarks.stored import RESULTS, measure_plan, run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.app import app
@@ -131,6 +136,33 @@ def test_tables_of_zones_and_differences_and_what_the_suite_says(made: tuple[Pat
     in_page = ("<h2>Zones</h2>", f"<p>4 of {failed} are shown.</p>")
     assert [part for part in (*in_both, *in_page) if part not in html] == []
     assert "human [m]" not in text + html  # there are no people
+
+
+def test_the_page_begins_with_all_scenarios_and_has_words_for_people(made: tuple[Path, SuiteResult]) -> None:
+    html = (made[0] / PAGE).read_text(encoding="utf-8")
+    first = re.search(r"<tbody><tr[^>]*><td>([^<]*)</td>", html)
+    assert first
+    assert first[1] == "(all)/freeze"
+    assert "2 seeds from 5" in html
+    one = made[1].model_copy(update={"seeds": [5], "about": "Robots cross a door (`world.zones`)."})
+    assert "1 seed from 5" in page(one)
+    assert "<code>world.zones</code>" in page(one)
+    assert "`" not in page(one).partition("<script>")[0]
+
+
+def test_a_failed_episode_comes_with_the_command_that_records_it_again(
+    made: tuple[Path, SuiteResult], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    html = (made[0] / PAGE).read_text(encoding="utf-8")
+    commands = [shlex.split(unescape(text)) for text in re.findall(r"<pre>(irsim run .*?)</pre>", html)]
+    assert len(commands) == len(worst_episodes(made[1]))
+    for words, episode in zip(commands, worst_episodes(made[1]), strict=True):
+        done = CliRunner().invoke(app, [*words[1:], "--json"])
+        assert done.exit_code == 0, done.output
+        again = json.loads(done.stdout)
+        assert (again["outcome"], again["steps"]) == (episode.outcome, episode.steps)
+        assert again["run_id"]
 
 
 def test_a_scenario_with_a_picture_as_map_has_replays(tmp_path: Path) -> None:

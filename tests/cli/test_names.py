@@ -44,8 +44,8 @@ MEANINGS = {
     "--rotate": "^Turn",
     "--run": "Id or folder of a run",
     "--seed": "[Ss]eed|drawn|[Cc]hooses",
-    "--seeds": "seeds",
-    "--set": "option|setting|parameter",
+    "--seeds": "their number from 0, or a list of seeds: 20, 5-9, 1,4,7",
+    "--set": "^Set KEY to VALUE, ",
     "--simulate": "[Ss]imulate",
     "--start": "Start of the window of time",
     "--step-time": "Step time",
@@ -183,6 +183,8 @@ def test_written_paths_are_printed_in_one_way(irsim: Run, room: Path, tmp_path: 
         said = [line for line in irsim(*words, code=0).stdout.splitlines() if line.startswith("wrote ")]
         assert [re.sub(r" \(.*\)$", "", line) for line in said] == [f"wrote {name}"], words
         assert (tmp_path / name).is_file()
+    again = irsim("run", "room.yaml", "--save-gif", "c.gif", "--steps", "2", code=0).stdout
+    assert re.search(r"^wrote c\.gif \([\d.]+ [kM]B\)$", again, re.MULTILINE)
 
 
 def test_a_picture_is_told_in_two_lines(irsim: Run, room: Path) -> None:

@@ -32,6 +32,14 @@ async def test_valid(client: Caller, workspace: Path) -> None:
     assert text_of(result).startswith(data["summary"])
 
 
+async def test_a_scene_that_a_policy_is_not_for_is_a_warning(client: Caller, workspace: Path) -> None:
+    data = data_of(await client.call("validate_scenario", scenario_yaml=ROOM, policy="multi_robot"))
+    assert "policy-unsuited" in {issue["code"] for issue in data["issues"]}
+    assert data["valid"]
+    refused = await client.call("validate_scenario", scenario_yaml=ROOM, policy="multi_robto")
+    assert "did you mean multi_robot?" in text_of(refused)
+
+
 async def test_invalid_is_data_with_every_problem_and_its_fix(client: Caller, workspace: Path) -> None:
     (workspace / "broken.yaml").write_text(BROKEN, encoding="utf-8")
     tools = {tool.name: tool for tool in (await client.list_tools()).tools}

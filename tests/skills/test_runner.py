@@ -120,7 +120,7 @@ def test_without_a_time_limit_the_script_has_the_horizon_of_irsim_run(folder: Pa
     _, told = script(SKILL / "scripts" / "episodes.py", "open.yaml", "--episodes", "1", folder=folder)
     run = irsim.run(folder / "open.yaml")
     assert run.time_limit_from == "default"
-    assert told["steps_at_most"] * 0.1 == pytest.approx(run.time_limit)
+    assert told["time_limit"] == pytest.approx(run.time_limit)
 
 
 def test_the_behavior_works_by_the_command_it_names(folder: Path) -> None:

@@ -117,9 +117,10 @@ def title_of(result: BenchmarkResult) -> str:
 
 def facts_of(result: BenchmarkResult) -> list[str]:
     """The runs, in a few lines."""
-    count = len(result.seeds)
-    size = f"{len(result.scenarios)} scenarios, {len(result.behaviors)} policies, {count} seeds from {result.seeds[0]}"
-    lines = [f"{size}; {len(result.episodes):,} episodes."]
+    policies = "1 policy" if len(result.behaviors) == 1 else f"{len(result.behaviors)} policies"
+    seeds = f"{plural(len(result.seeds), 'seed')} from {result.seeds[0]}"
+    episodes = "1 episode" if len(result.episodes) == 1 else f"{len(result.episodes):,} episodes"
+    lines = [f"{plural(len(result.scenarios), 'scenario')}, {policies}, {seeds}; {episodes}."]
     if isinstance(result, SuiteResult):
         hashes = f"suite hash {result.suite_hash}, run hash {result.hash}"
         lines.append(f"Suite version {result.suite_version}, {hashes}, {program_of(result)}.")

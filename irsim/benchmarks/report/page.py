@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -27,6 +28,7 @@ from irsim.benchmarks.report.markdown import (
     zones_of,
 )
 from irsim.benchmarks.report.rows import RANKS, policy_labels
+from irsim.benchmarks.summary import is_summary
 from irsim.common.hashing import digest
 from irsim.common.text import clean
 from irsim.results.benchmark import BenchmarkResult
@@ -43,15 +45,20 @@ class Shown:
         caption: Its caption.
         png: Picture of some moments.
         replay: Path of its replay, relative to the page; empty without one.
+        again: Command that runs it again.
     """
 
     caption: str
     png: bytes
     replay: str = ""
+    again: str = ""
 
 
 def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[str] = ()) -> str:
-    """The page: facts, tables, charts, worst episodes, notes, and how to run it again."""
+    """The page: facts, tables, charts, worst episodes, notes, and how to run it again.
+
+    Rows over several scenarios come first in every table.
+    """
     labels, columns = policy_labels(result), columns_of(result)
     title = _shown(title_of(result))
     rows = [[row.scenario, labels[row.behavior], str(row.episodes), *cells_of(row, columns)] for row in result.rows]
@@ -61,9 +68,9 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
     figures = [f"<figure>{svg}<figcaption>{_shown(caption)}</figcaption></figure>" for caption, svg in charts(result)]
     worst = [_episode(one) for one in shown]
     parts = [
-        f"<h1>{title}</h1>", *(f"<p>{_shown(line)}</p>" for line in facts_of(result)),
-        *(f"<p>{_shown(line)}</p>" for line in about_of(result)),
-        _table(main), f'<p class="small">{_shown(" ".join(footnotes_of(result)))}</p>',
+        f"<h1>{title}</h1>", *(f"<p>{_prose(line)}</p>" for line in facts_of(result)),
+        *(f"<p>{_prose(line)}</p>" for line in about_of(result)),
+        _table(main), f'<p class="small">{_prose(" ".join(footnotes_of(result)))}</p>',
         "<h2>Zones</h2><p>Means over the robots.</p>" + _table(zones) if zones else "",
         f"<h2>{_shown(ROLES)}</h2>" + _table(roles) if (roles := roles_of(result)) else "",
         f"<h2>Differences to {_shown(labels[result.behaviors[0]])} with the same seeds</h2>" + _table(differences)
@@ -71,16 +78,16 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
         f"<h2>{_shown(RANKS)}</h2>" + _table(ranks) if (ranks := ranks_of(result)) else "",
         f"<h2>{_shown(POLICIES)}</h2>",
         *(
-            f"<p>{_shown(known or 'not stated')}</p><ul>"
+            f"<p>{_prose(known or 'not stated')}</p><ul>"
             + "".join(f"<li>{_shown(labels[text])}: <code>{_shown(text)}</code></li>" for text in texts)
             + "</ul>"
             for known, texts in classes_of(result).items()
         ),
-        *(f'<p class="note">{_shown(note)}</p>' for note in (*result.notes, *notes)),
+        *(f'<p class="note">{_prose(note)}</p>' for note in (*result.notes, *notes)),
         "<h2>Charts</h2>" if figures else "", f'<div class="charts">{"".join(figures)}</div>',
         f"<h2>Episodes that failed</h2><p>{len(worst)} of {failed:,} are shown.</p>" if worst else "", *worst,
         "<h2>Run it again</h2>", f"<pre>{_shown(result.reproduce)}</pre><p>{_shown(program_of(result))}</p>",
-        f"<h2>Cite this run</h2><p>{_shown(citation_of(result))}</p>",
+        f"<h2>Cite this run</h2><p>{_prose(citation_of(result))}</p>",
     ]  # fmt: skip
     allowed = base64.b64encode(bytes.fromhex(digest(_SORT.encode()))).decode()
     body, colors = "\n".join(filter(None, parts)), scheme_rules(_COLORS)
@@ -106,11 +113,16 @@ def _shown(text: str) -> str:
     return escape(clean(text, 10**6))
 
 
+def _prose(text: str) -> str:
+    """A sentence of the result as HTML; words between backticks are code."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", _shown(text))
+
+
 def _table(table: Table) -> str:
     """A table whose first column is empty where it repeats the row above."""
     headings, rows = table
     lines, last = [], None
-    for name, *cells in rows:
+    for name, *cells in sorted(rows, key=lambda row: not is_summary(row[0])):
         mark = ' class="first"' if name != last else ""
         shown = [name if name != last else "", *cells]
         lines.append(f"<tr{mark}>" + "".join(f"<td>{_shown(cell)}</td>" for cell in shown) + "</tr>")
@@ -119,17 +131,28 @@ def _table(table: Table) -> str:
         f'<th scope="col" aria-sort="none"><button type="button">{_shown(_heading(text))}</button></th>'
         for text in headings
     )
-    return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
+    hint = '<p class="small hint" hidden>The table goes on to the right: scroll it sideways.</p>'
+    return f'{hint}<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
 
 
 def _episode(one: Shown) -> str:
     picture = f'<img alt="{_shown(one.caption)}" src="data:image/png;base64,{base64.b64encode(one.png).decode()}">'
     link = f'<a href="{_shown(one.replay)}" title="{_shown(one.caption)}">{picture}</a>' if one.replay else picture
     told = f'<a href="{_shown(one.replay)}">{_shown(one.caption)}</a>' if one.replay else _shown(one.caption)
-    return f'<figure class="episode">{link}<figcaption>{told}</figcaption></figure>'
+    again = f"<pre>{_shown(one.again)}</pre>" if one.again else ""
+    return f'<figure class="episode">{link}<figcaption>{told}{again}</figcaption></figure>'
 
 
 _SORT = """
+for (const wide of document.querySelectorAll(".wide")) {
+  const say = () => {
+    const more = wide.scrollWidth > wide.clientWidth + 1;
+    wide.previousElementSibling.hidden = !more;
+    more ? wide.setAttribute("tabindex", "0") : wide.removeAttribute("tabindex");  // so that keys scroll it, too
+  };
+  new ResizeObserver(say).observe(wide);
+  say();
+}
 for (const table of document.querySelectorAll("table")) {
   const body = table.tBodies[0], heads = [...table.tHead.rows[0].cells];
   for (const row of body.rows)  // rows below a scenario get its name, so that they can move
@@ -150,7 +173,7 @@ for (const table of document.querySelectorAll("table")) {
   }));
 }
 """
-"""Sorts a table by the column whose heading is clicked, or pressed with a key."""
+"""Says which tables scroll, and sorts a table by the column whose heading is clicked, or pressed with a key."""
 _SHELL = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><meta http-equiv="Content-Security-Policy"
 content="default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src 'unsafe-inline';
@@ -166,6 +189,7 @@ a {{ color: var(--near); }}
 .wide {{ overflow-x: auto; }}
 table {{ border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px; }}
 th, td {{ padding: .2rem .7rem .2rem 0; text-align: left; white-space: nowrap; }}
+th:first-child, td:first-child {{ position: sticky; left: 0; background: var(--page); }}
 th {{ border-bottom: 1px solid var(--ink); position: sticky; top: 0; }}
 th button {{ font: inherit; font-weight: 600; color: inherit; background: none; border: 0; padding: 0;
   cursor: pointer; }}
@@ -175,7 +199,8 @@ th[aria-sort=descending] button::after {{ content: " \\2193"; }}
 tr.first td, .sorted td {{ border-top: 1px solid var(--line); }}
 figure svg text {{ fill: currentColor; }}
 figure svg g:has(> title) {{ cursor: help; }}
-@media print {{ .wide {{ overflow: visible; }} td, th {{ white-space: normal; }} }}
+.hint {{ margin: 0 0 .2rem; }}
+@media print {{ .hint {{ display: none; }} .wide {{ overflow: visible; }} td, th {{ white-space: normal; }} }}
 .small, figcaption, .note {{ color: var(--muted); font-size: 13px; }}
 .charts {{ display: grid; grid-template-columns: repeat(auto-fit, minmax(min(30rem, 100%), 1fr)); gap: 1rem; }}
 figure {{ margin: 0 0 1rem; }}

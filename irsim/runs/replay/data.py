@@ -21,6 +21,7 @@ from irsim.runs.replay.rows import (
     add_poses,
     flags_of,
     page_event,
+    page_head,
     page_scene,
     steps_between_rows,
     travellers,
@@ -123,14 +124,8 @@ def pack_trace(trace: Trace, events: Sequence[Event], simulation: Simulation, ab
     add_goals(columns, trace.goal[rows], travellers(objects), quantum)
     add_flags(columns, flags_of(trace)[rows])
     scans = _add_scans(columns, trace, rows, scene["lidars"])
-    head = {
-        **scene,
-        **about,
-        "last_step": int(trace.step[-1]),
-        "every": every,
-        "scans": scans,
-        **_events(events, trace, objects),
-    }
+    last, shown = int(trace.step[-1]), _events(events, trace, objects)
+    head = page_head(scene, about, last_step=last, every=every, scans=scans, events=shown)
     return Packed(columns.block(head), head)
 
 

@@ -15,6 +15,7 @@ from irsim.runs.replay.rows import (
     add_poses,
     flags_of,
     page_event,
+    page_head,
     page_scene,
     steps_between_rows,
     travellers,
@@ -71,26 +72,14 @@ class GrowingRun:
         add_poses(columns, self._pose[None, self._moving], self._quantum)
         add_goals(columns, start.goal, self._travellers, self._quantum)
         add_flags(columns, self._flags[None])
-        head = {
-            **scene,
-            "run_id": "",
-            "title": clean(simulation.scenario.name),
-            "growing": True,
-            "status": "simulating",
-            "outcome": None,
-            "seed": int(simulation.state.seed[0]),
-            "notes": [],
-            "horizon": horizon,
-            "last_step": self._last,
-            "every": self._every,
-            "scans": "computed" if scene["lidars"] else "none",
-            "events": [],
-            "event_count": 0,
-            "left_out": {},
-        }
+        about = {"run_id": "", "title": clean(simulation.scenario.name), "status": "simulating", "outcome": None}
+        seed = int(simulation.state.seed[0])
+        more = {"seed": seed, "notes": [], "growing": True, "horizon": horizon, **facts}
+        scans = "computed" if scene["lidars"] else "none"
+        head = page_head(scene, {**about, **more}, last_step=self._last, every=self._every, scans=scans)
         for lidar in scene["lidars"]:
             del lidar["key"]
-        self.head = columns.block({**head, **facts}, _FASTEST)
+        self.head = columns.block(head, _FASTEST)
 
     def look(self, *, last: bool = False) -> None:
         """Take the present state as a row, unless the page leaves it out.

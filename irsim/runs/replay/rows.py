@@ -29,6 +29,7 @@ __all__ = [
     "add_poses",
     "flags_of",
     "page_event",
+    "page_head",
     "page_scene",
     "steps_between_rows",
     "travellers",
@@ -76,6 +77,29 @@ def page_scene(simulation: Simulation, columns: Columns) -> dict[str, Any]:
         "grid": grid,
         "zones": page_zones(world.zones),
     }
+
+
+def page_head(
+    scene: Mapping[str, Any],
+    about: Mapping[str, Any],
+    *,
+    last_step: int,
+    every: int,
+    scans: str,
+    events: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """The head of a run, recorded or live.
+
+    Args:
+        scene: See :func:`page_scene`.
+        about: What the page says about the run: ``run_id``, ``title``, ``status``, ``outcome``, ``seed``, ``notes`` …
+        last_step: The last step that the page has.
+        every: Number of steps from row to row.
+        scans: ``none``, ``recorded`` or ``computed``.
+        events: ``events``, ``event_count`` and ``left_out``; default: none yet.
+    """
+    known = {"events": [], "event_count": 0, "left_out": {}} if events is None else events
+    return {**scene, **about, "last_step": last_step, "every": every, "scans": scans, **known}
 
 
 def steps_between_rows(count: int, moving: int) -> int:

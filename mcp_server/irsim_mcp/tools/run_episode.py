@@ -63,7 +63,7 @@ def tool(services: Services) -> StrictTool:
         seeds: Annotated[
             int | str | list[int] | None,
             WithJsonSchema({"type": ["integer", "string", "array"]}),
-            Field(description=f"Several, at most {MAX_RUN_SEEDS}: 3, '0..19', [1, 4]."),
+            Field(description=f"Several, at most {MAX_RUN_SEEDS}: 3, '0-19', [1, 4]."),
         ] = None,
         base: Annotated[str | None, Field(description="Scenario before an edit; with seeds.")] = None,
         policy: Annotated[str | None, Field(max_length=500, description="Of all robots, as in benchmark.")] = None,

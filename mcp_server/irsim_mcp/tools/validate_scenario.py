@@ -79,6 +79,7 @@ def tool(services: Services) -> StrictTool:
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
         base: Annotated[str | None, Field(description="Scenario before an edit: path or YAML text.")] = None,
+        policy: Annotated[str | None, Field(description="Warn if the scene does not suit it.")] = None,
         simulate: Annotated[bool, Field(description="Try it, if valid.")] = True,
         max_issues: Annotated[int, Field(ge=1, le=100)] = 20,
         response_format: Annotated[
@@ -92,6 +93,7 @@ def tool(services: Services) -> StrictTool:
             scenario_yaml,
             seconds=services.limits.check_seconds,
             simulate=simulate,
+            policy=policy,
             **services.base(base),
         )
         given = services.given(scenario_path, scenario_yaml)

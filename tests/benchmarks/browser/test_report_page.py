@@ -77,6 +77,14 @@ def test_a_phone_scrolls_tables_and_not_the_page(report: Path, watched: Watched)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     wide = "document.querySelector('.wide')"
     assert page.evaluate(f"{wide}.scrollWidth > {wide}.clientWidth && getComputedStyle({wide}).overflowX === 'auto'")
+    page.wait_for_function("!document.querySelector('.hint').hidden")
+    assert "scroll it sideways" in page.inner_text(".hint")
+    left = "document.querySelector('tbody td').getBoundingClientRect().left"
+    before = page.evaluate(left)
+    page.evaluate(f"{wide}.scrollLeft = 120")
+    assert page.evaluate(left) == before  # the names of the scenarios stay
+    page.set_viewport_size({"width": 1600, "height": 800})
+    page.wait_for_function("document.querySelector('.hint').hidden")
 
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
