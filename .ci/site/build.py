@@ -174,7 +174,7 @@ def names_of(pages: list[Page]) -> dict[str, list[tuple[str, str, str]]]:
         path, _, name = place.partition("#")
         for said in dict.fromkeys((name.lower(), name.rpartition(".")[2].lower())):
             names.setdefault(said, []).append((path, titles[path], name))
-    return {said: found[:MEANINGS] for said, found in sorted(names.items())}
+    return {said: meanings[:MEANINGS] for said, meanings in sorted(names.items())}
 
 
 def lay_out(source: Path, html: Path, names: Mapping[str, object], *, jobs: str = "2") -> None:

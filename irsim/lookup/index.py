@@ -106,7 +106,7 @@ def differences_answer() -> Answer:
     return Answer(
         topic="differences",
         kind="index",
-        title="What differs from IR-SIM 2.12",
+        title="Differences from IR-SIM 2.12",
         text="Files and programs for IR-SIM 2.12 run without changes, but for these intended differences; "
         f"`irsim describe {lines[0].name}` says what irsim does instead, and why.",
         groups={"what IR-SIM 2.12 does": lines},

@@ -48,7 +48,7 @@ def policy_answer(topic: str) -> Answer | None:
 
 
 def advice_among_people(law: str) -> str:
-    """The options that a law needs among people who do not give way, as a sentence; empty if it needs none."""
+    """The options that a law needs among people who do not give way, as a sentence; empty without such options."""
     card = SCENE_CARDS.get(law)
     setting = ", ".join(f"{key}: {yaml_flow(value)}" for key, value in (card.remedy if card else {}).items())
     return f"A robot among people who do not give way needs `{setting}`." if setting else ""

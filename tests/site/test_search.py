@@ -23,8 +23,8 @@ def answers(html: Path, questions: list[str]) -> list[list[str]]:
 
 
 def test_the_first_three_pages_answer_each_question(html: Path) -> None:
-    found = answers(html, list(QUESTIONS))
-    firsts = [list(dict.fromkeys(place.partition("#")[0] for place in places))[:3] for places in found]
+    answered = answers(html, list(QUESTIONS))
+    firsts = [list(dict.fromkeys(place.partition("#")[0] for place in places))[:3] for places in answered]
     wrong = {
         question: first
         for (question, right), first in zip(QUESTIONS.items(), firsts, strict=True)
@@ -42,8 +42,8 @@ def test_a_name_leads_first_to_where_it_is_explained(html: Path) -> None:
         "spl": "reference/metrics#spl",
         "neighborDist": "reference/behavior/orca#behavior.orca.neighbordist",
     }
-    found = dict(zip(right, answers(html, list(right)), strict=True))
-    assert {question: places[0].lower() for question, places in found.items()} == right
+    answered = dict(zip(right, answers(html, list(right)), strict=True))
+    assert {question: places[0].lower() for question, places in answered.items()} == right
     text = {
         name: (html / f"{name}.html").read_text(encoding="utf-8") for name in ("reference/robot", "reference/codes")
     }

@@ -1,4 +1,4 @@
-// What the bindings of all structs share.
+// Names of keyword arguments, which the bindings of all structs check.
 #include "bindings/helpers.hpp"
 
 #include <algorithm>

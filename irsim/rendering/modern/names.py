@@ -80,7 +80,7 @@ def place_names(
         layout: The layout.
         theme: The colours.
         sizes: Measures texts.
-        known: Boxes of the marks of the picture before with this layout [u]; it receives those of these marks.
+        known: Boxes of the marks of the picture before with this layout [u]; boxes of these marks are added.
 
     Returns:
         Lines to texts that stand away, the labels, and the number of texts without a place.

@@ -92,7 +92,7 @@ def page_head(
 
     Args:
         scene: See :func:`page_scene`.
-        about: What the page says about the run: ``run_id``, ``title``, ``status``, ``outcome``, ``seed``, ``notes`` …
+        about: Facts about the run: ``run_id``, ``title``, ``status``, ``outcome``, ``seed``, ``notes`` …
         last_step: The last step that the page has.
         every: Number of steps from row to row.
         scans: ``none``, ``recorded`` or ``computed``.

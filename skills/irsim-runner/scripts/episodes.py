@@ -76,10 +76,10 @@ def main() -> int:
         return 1 if isinstance(error, PolicyError) else 2
     rows = [row(run) for run in result.episodes]
     counts = {name: sum(one["outcome"] == name for one in rows) for name in ("success", "collision", "timeout")}
-    found = {"seed": given.seed, "time_limit": result.episodes[0].time_limit, **counts, "episodes": rows[:MAX_LISTED]}
+    summary = {"seed": given.seed, "time_limit": result.episodes[0].time_limit, **counts, "episodes": rows[:MAX_LISTED]}
     if len(rows) > MAX_LISTED:
-        found["left_off"] = len(rows) - MAX_LISTED
-    print(json.dumps(found, indent=1))
+        summary["left_off"] = len(rows) - MAX_LISTED
+    print(json.dumps(summary, indent=1))
     return 0
 
 
