@@ -153,7 +153,9 @@ def test_the_leaderboard_has_the_shares_and_intervals_of_the_page_of_a_suite() -
     freeze = [one for one in episodes_of("circle_swap_v2") if one.scenario.endswith("/freeze")]
     for one in standings(freeze, TABLES["circle_swap_v2"].plan().policies, certain_of("circle_swap_v2")):
         share = one.shares[0]
-        [cell] = re.findall(rf"^\| \(all\)/freeze \| {one.policy} \| {one.episodes} \| ([^|]*) \|", page, re.MULTILINE)
+        cell, *_ = re.findall(
+            rf"^\| \(all\)/freeze \| {one.policy} \| {one.episodes} \| ([^|]*) \|", page, re.MULTILINE
+        )
         shown = [float(text) for text in re.findall(r"([\d.]+)%", cell)]
         assert shown == pytest.approx([100 * (value or 0) for value in (share.rate, share.low, share.high)], abs=0.51)
 

@@ -135,7 +135,9 @@ TABLES = {
     "circle_swap_v2": Table(
         "circle_swap_v2", ("diff-8",), ("orca", "rvo", "sfm", "dash", "avocado", "footprint_orca"), ("diff-8", "omni-8")
     ),
-    "social_v2": Table("social_v2", ("head-on",), again=("head-on", "doorway")),
+    "social_v2": Table(
+        "social_v2", ("head-on",), ("as-written", "orca", "sfm", "dash", *_ADDED), again=("head-on", "doorway")
+    ),
     "clutter_v2": Table(
         "clutter_v2",
         ("posts-15",),
