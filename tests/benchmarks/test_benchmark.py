@@ -155,7 +155,9 @@ def test_noise_that_no_policy_reads_is_not_chance() -> None:
 
 def test_a_behavior_that_draws_random_numbers_runs_with_every_seed(files) -> None:
     result = irsim.benchmark(files[1], ["dash", "avocado"], seeds=3)
-    assert [len(result.episodes), result.notes] == [6, []]
+    [note] = result.notes
+    assert [len(result.episodes), [row.success.n for row in result.rows]] == [6, [1, 3]]
+    assert note.endswith("nothing random reaches dash: all seeds give one episode, which counts once")
 
 
 def test_a_scenario_without_randomness_runs_once_and_a_note_says_so(files) -> None:
