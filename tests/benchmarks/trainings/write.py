@@ -18,7 +18,8 @@ from irsim.benchmarks.stored import measure_plan
 from irsim.benchmarks.suite import Protocol
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.common.hashing import file_digest
-from irsim.metrics.statistics import bootstrap
+from irsim.metrics.statistics import bootstrap, wilson
+from irsim.policies.networks.opening import open_network
 from irsim.results.benchmark import EpisodeRow
 from tests.benchmarks.trainings.train import RECIPES, SEEDS, weights_of
 
@@ -31,6 +32,7 @@ PROTOCOLS: dict[str, Protocol] = {"multi_robot": "yield", "multi_robot_freeze": 
 EPISODES = range(30_000, 30_100)
 _SHIPPED = "shipped"
 _HEAD = ("policy", "training", "robots", "outcomes")
+TRAINED = PAGE.parents[3] / "irsim" / "policies" / "trained"
 _LETTERS = {"success": "s", "collision": "c", "timeout": "t"}
 _STUDENT = {2: 12.706, 3: 4.303, 4: 3.182, 5: 2.776}
 """Number of trainings -> the 97.5 % quantile of Student's t with one degree of freedom less."""
@@ -43,11 +45,12 @@ The tables of policies that learn show one training of each. Here a recipe was t
 in the head of its table, as `python -m tests.benchmarks.trainings.train NAME SEED FOLDER` does. Each training keeps its
 best round by the validation seeds of its task (900,000 and above). All are measured in `random_polygons_v1` under the
 protocol that they were trained for, with the seeds 30,000 to 30,099, which no choice has looked at. *Shipped* is the
-policy of that name that comes with irsim, from an earlier training with seed 0.
+policy of that name that comes with irsim, from an earlier training with seed 0, whose length differs.
 
 Shares of successes in %. *Between trainings* is the standard deviation of these shares, and the interval of their mean
 by Student's t. *Between episodes* is the interval of the same mean when the 100 scenes are resampled and the trainings
-are kept. Both intervals are 95 %. Few trainings make the first one wide.
+are kept. Both intervals are 95 %. Few trainings make the first one wide. Equal shares give it no width, and it is left
+out. Where all scenes ended alike, the second one is Wilson's for the 100 scenes.
 """
 
 
@@ -105,12 +108,19 @@ def page(lines: Sequence[Kept]) -> str:
         text += [f"| {' | '.join([*heads, 'collisions', 'shipped'])} |", "|---" * (len(heads) + 2) + "|"]
         text += [_row(robots, mine) for robots in dict.fromkeys(one.robots for one in mine)]
         digests = [f"seed {seed} `{file_digest(weights_of(name, int(seed)))[:12]}`" for seed in trainings]
-        text += ["", f"SHA-256 of the weights begin with {', '.join(digests)}.", ""]
+        lengths = [f"seed {seed} {_decisions(weights_of(name, int(seed)))}" for seed in trainings]
+        lengths.append(f"shipped {_decisions(TRAINED / f'{name}.npz')}")
+        text += ["", f"Decisions until the round that was kept: {', '.join(lengths)}.", ""]
+        text += [f"SHA-256 of the weights begin with {', '.join(digests)}.", ""]
     where = OUTCOMES.relative_to(PAGE.parents[3]).as_posix()
     text += [
         f"All outcomes: `{where}` of the repository, SHA-256 `{file_digest(OUTCOMES)}`. The weights lie beside it."
     ]
     return "\n".join(text) + "\n"
+
+
+def _decisions(weights: Path) -> str:
+    return f"{open_network(weights).head.card.steps:,}"
 
 
 def _row(robots: int, lines: Sequence[Kept]) -> str:
@@ -119,10 +129,12 @@ def _row(robots: int, lines: Sequence[Kept]) -> str:
     shares = [_share(outcomes, "s") for outcomes in trained]
     mean, apart = fmean(shares), stdev(shares)
     reach = _STUDENT[len(shares)] * apart / math.sqrt(len(shares))
-    low, high = bootstrap([fmean(letter == "s" for letter in scene) for scene in zip(*trained, strict=True)])
+    scenes = [fmean(letter == "s" for letter in scene) for scene in zip(*trained, strict=True)]
+    low, high = bootstrap(scenes) if len(set(scenes)) > 1 else wilson(round(sum(scenes)), len(scenes))
+    between = f" [{max(0.0, mean - reach):.0f}, {min(100.0, mean + reach):.0f}]" if apart else ""
     return (
-        f"| {robots} | {' | '.join(f'{share:.0f}' for share in shares)} | {mean:.1f} | {apart:.1f} "
-        f"[{max(0.0, mean - reach):.0f}, {min(100.0, mean + reach):.0f}] | [{100 * low:.0f}, {100 * high:.0f}] "
+        f"| {robots} | {' | '.join(f'{share:.0f}' for share in shares)} | {mean:.1f} | {apart:.1f}{between} "
+        f"| [{100 * low:.0f}, {100 * high:.0f}] "
         f"| {fmean(_share(outcomes, 'c') for outcomes in trained):.1f} | {_share(shipped, 's'):.0f} |"
     )
 
