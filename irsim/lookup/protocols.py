@@ -64,7 +64,9 @@ def _parts(name: str) -> Iterator[str]:
     if suite.sources:
         yield "## Sources\n\n" + "\n".join(f"- {source}" for source in suite.sources)
     one = f"irsim run {name}/{plan.scenarios[0].name} --seed {plan.seeds[0]}"
-    own = f"The policies of the suite itself: `irsim benchmark {name}`; one episode: `{one}`."
+    listed = ", ".join(f"`{policy}`" for policy in suite.policies)
+    runs = f"`irsim benchmark {name}` runs {listed}" if listed else f"`irsim benchmark {name}`"
+    own = f"{runs}; one episode: `{one}`."
     yield "\n".join(["## Run it", "", own, *_commands(name)])
 
 

@@ -33,6 +33,7 @@ _SHOWN = """\
   `ppo` succeed in 79 % beside five of `ppo`, and in 87 to 89 % beside five of any other policy.
 - Five robots with a planner (`orca`, `avocado`, `footprint_orca`) all succeed among five with another planner, and
   in 97 to 100 % among networks and people.
+- Compare within a role: the two halves differ even where all follow one policy, as `sarl_multi_robot` (97 and 90 %).
 - 30 episodes tell little about one robot: 30 of 30 is 89 to 100 %, and columns have the same seeds, so compare pairs
   of episodes (`scripts/verdict.py`) before you say that they differ. `irsim benchmark mixed_v2 --full` runs 300."""
 _OF_PROBE = (

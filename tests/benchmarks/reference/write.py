@@ -183,8 +183,13 @@ def result_of(name: str) -> SuiteResult:
     """The result of a table, from its kept lines alone."""
     result = result_of_episodes(TABLES[name].plan(), episodes_of(name))
     assert isinstance(result, SuiteResult)
-    engines = dict.fromkeys(line["engine"] for line in kept_of(name).values() if line.get("engine"))
-    return result.model_copy(update={"engine": " and ".join(engines)})
+    policies: dict[str, dict[str, None]] = {}
+    for (_, policy, _), line in kept_of(name).items():
+        policies.setdefault(line.get("engine", ""), {})[policy] = None
+    named = {engine: ", ".join(of) for engine, of in policies.items() if engine}
+    words = [engine if len(policies) == 1 else f"{engine} ({of})" for engine, of in named.items()]
+    rest = [f"an unknown one ({', '.join(policies[''])})"] if named and "" in policies else []
+    return result.model_copy(update={"engine": " and ".join([*words, *rest])})
 
 
 def page_of(name: str) -> str:
