@@ -10,7 +10,7 @@ from irsim.api.look import look_options, with_look
 from irsim.api.read_input import opened_policy, read_scenario
 from irsim.api.take_snapshot import ended_before, extent_of, moved_view, snapshot_of
 from irsim.common.arguments import check_whole_number
-from irsim.common.files import check_suffix, replacing
+from irsim.common.files import TargetError, check_suffix, replacing
 from irsim.common.keywords import answers_misspelt
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
@@ -25,8 +25,9 @@ from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.runs.recorder import Recorder
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.locate import image_places
 from irsim.scenario.open import import_modules
-from irsim.scenario.resolve.resolved import random_parts
+from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
 from irsim.simulation.outcome import is_over
 from irsim.validation.scene_table import scene_table
 
@@ -86,6 +87,7 @@ def render(
         ScenarioError: The scenario has errors.
         InputError: There is no such policy.
         PolicyError: The policy cannot drive these robots, or failed.
+        TargetError: The scenario reads the file.
         ValueError: The suffix is unsupported, the region is invalid, or there are too few or too many moments.
     """
     target = Path(out)
@@ -96,6 +98,7 @@ def render(
         check_suffix(target, ["png"])
     driver, behavior = opened_policy(path, policy, None, limits)
     scenario, warnings = read_scenario(path, strict=strict, limits=limits, behavior=behavior)
+    _check_not_read(target, scenario)
     if driver is not None:
         warnings = findings_under_policy(warnings, scenario)
     animated = target.suffix.lower() in MOVING_SUFFIXES
@@ -144,6 +147,16 @@ def render(
         table=scene_table(scenario, env.seed, driven if driver is not None else None),
         reproduce=reproduce_command("render", path, repeated, steps, strict, imports, extra=[*sized, "-o", str(out)]),
     )
+
+
+def _check_not_read(target: Path, scenario: ResolvedScenario) -> None:
+    """Refuse to draw over a file that the scenario reads: its map, or an image of an object."""
+    folder = Path(scenario.source).parent if scenario.source is not None else None
+    images = [record.description for record in scenario.objects if record.description]
+    read = [Path(path) for path in scenario.map_files.values()]
+    read += [place for name in images for place in image_places(name, folder)]
+    if target.exists() and any(place.exists() and place.samefile(target) for place in read):
+        raise TargetError("file-exists", f"the scenario reads {str(target)!r}", "name another file with -o")
 
 
 def usual_size(size: int | None, printed: bool) -> int:

@@ -16,14 +16,13 @@ def main() -> None:
     """Run the command line and exit: 0 finished, 1 could not finish, 2 invalid input, 130 interrupted."""
     try:
         refuse_conflicts()  # irsim/__init__.py calls it too, but an installed ir-sim may have replaced that file
-    except ConflictError as error:
-        raise SystemExit(f"irsim: {error}") from None
-    try:
         from irsim.cli.app import app
         from irsim.cli.output import prepare_streams
 
         prepare_streams()
         app(prog_name="irsim")
+    except ConflictError as error:
+        raise SystemExit(f"irsim: {error}") from None
     except KeyboardInterrupt:  # during an import, before a command can handle it
         print("interrupted before it began", file=sys.stderr)
         raise SystemExit(130) from None

@@ -16,7 +16,7 @@ def scheme_rules(names: Sequence[str]) -> str:
         names: Names of colours in the table of the themes, such as ``page`` and ``ink``.
     """
     light, dark = _variables(LIGHT, names), _variables(DARK, names)
-    return f":root {{ {light} }}\n@media (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}"
+    return f":root {{ {light} }}\n@media screen and (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}"
 
 
 def _variables(theme: Theme, names: Sequence[str]) -> str:

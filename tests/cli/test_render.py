@@ -108,6 +108,23 @@ def test_render_prints_what_the_file_becomes_and_validate_does_when_asked(irsim:
 
 
 @pytest.mark.parametrize("more", [[], ["--strip", "2"]])
+def test_a_picture_does_not_replace_the_map_or_an_image_of_its_scenario(
+    irsim: Run, tmp_path: Path, more: list[str]
+) -> None:
+    for name in ("hall.png", "rover.png"):
+        Image.new("L", (40, 40), 255).save(tmp_path / name)
+    kept = {name: (tmp_path / name).read_bytes() for name in ("hall.png", "rover.png")}
+    robot = "{kinematics: {name: diff}, state: [1, 1, 0], goal: [3, 3, 0], description: rover.png}"
+    text = f"world: {{width: 4, height: 4, obstacle_map: hall.png}}\nrobot: {robot}\n"
+    (tmp_path / "hall.yaml").write_text(text)
+    for name in kept:
+        refused = irsim("render", "hall.yaml", "-o", name, *more, code=2)
+        assert f"the scenario reads '{name}'. Fix: name another file with -o." in refused.output
+    assert {name: (tmp_path / name).read_bytes() for name in kept} == kept
+    irsim("render", "hall.yaml", "-o", "drawn.png", *more, code=0)
+
+
+@pytest.mark.parametrize("more", [[], ["--strip", "2"]])
 def test_a_view_that_is_moved_is_said(irsim: Run, tmp_path: Path, more: list[str]) -> None:
     (tmp_path / "places.yaml").write_text(PLACES.replace("world: {", "world: {plot: {viewpoint: scout}, "))
     drawn = ["render", "places.yaml", "-o", "places.png", "--steps", "1", *more]
