@@ -161,17 +161,15 @@ def names_of(pages: list[Page]) -> dict[str, list[tuple[str, str, str]]]:
     """Names that people look for, as keys, components and codes -> page, its title and anchor of each meaning."""
     names = dict[str, list[tuple[str, str, str]]]()
     titles = {page.path: page.title for page in pages}
+    order = {path: number for number, path in enumerate(titles)}
     places = dict.fromkeys(where for where in whereabouts().values() if "#" in where)
     for page in pages:
         if page.path.startswith("reference/"):
             places |= dict.fromkeys(
                 f"{page.path}#{name}" for name in re.findall(r'<span id="([^"]*)"></span>', page.text)
             )
-    for place in sorted(
-        places,
-        key=lambda place: (place.count("."), len(place.partition("#")[2]), list(titles).index(place.partition("#")[0])),
-    ):
-        path, _, name = place.partition("#")
+    split = [(path, name) for path, _, name in (place.partition("#") for place in places)]
+    for path, name in sorted(split, key=lambda place: ("".join(place).count("."), len(place[1]), order[place[0]])):
         for said in dict.fromkeys((name.lower(), name.rpartition(".")[2].lower())):
             names.setdefault(said, []).append((path, titles[path], name))
     return {said: meanings[:MEANINGS] for said, meanings in sorted(names.items())}

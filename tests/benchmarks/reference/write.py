@@ -186,10 +186,10 @@ def result_of(name: str) -> SuiteResult:
     policies: dict[str, dict[str, None]] = {}
     for (_, policy, _), line in kept_of(name).items():
         policies.setdefault(line.get("engine", ""), {})[policy] = None
-    named = {engine: ", ".join(of) for engine, of in policies.items() if engine}
-    words = [engine if len(policies) == 1 else f"{engine} ({of})" for engine, of in named.items()]
-    rest = [f"an unknown one ({', '.join(policies[''])})"] if named and "" in policies else []
-    return result.model_copy(update={"engine": " and ".join([*words, *rest])})
+    engines = sorted(policies, key=lambda engine: not engine)
+    if len(engines) > 1:
+        engines = [f"{engine or 'an unknown one'} ({', '.join(policies[engine])})" for engine in engines]
+    return result.model_copy(update={"engine": " and ".join(engines)})
 
 
 def page_of(name: str) -> str:
