@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Collection, Mapping, Sequence
 
 from irsim.benchmarks.incidents import placed
-from irsim.benchmarks.summary import counts_once, is_summary, paired_differences
+from irsim.benchmarks.summary import counts_once, first_of_each, is_summary, paired_differences
 from irsim.metrics.statistics import mcnemar
 from irsim.results.benchmark import BenchmarkRow, EpisodeRow, PolicyPair, PolicyRank
 
@@ -38,7 +38,8 @@ def pairs_of(
         once = {one: counts_once([own for own in episodes if own.behavior == one], certain) for one in behaviors}
         for mine, other in itertools.combinations(range(len(behaviors)), 2):
             equal = once[behaviors[mine]] and once[behaviors[other]]
-            both = [(trial[mine], trial[other]) for trial in (_first_of_each(trials) if equal else trials)]
+            counted = first_of_each(trials, lambda trial: trial[0].scenario) if equal else trials
+            both = [(trial[mine], trial[other]) for trial in counted]
             if not both:
                 continue
             exact = equal and not is_summary(name)
@@ -105,11 +106,3 @@ def _trials(episodes: Sequence[EpisodeRow], behaviors: Sequence[str]) -> list[li
         by_trial.setdefault((one.scenario, one.seed), {})[one.behavior] = one
     complete = [made for _, made in sorted(by_trial.items()) if len(made) == len(behaviors)]
     return [[made[behavior] for behavior in behaviors] for made in complete]
-
-
-def _first_of_each(trials: Sequence[Sequence[EpisodeRow]]) -> list[Sequence[EpisodeRow]]:
-    """The first trial of each scenario."""
-    first: dict[str, Sequence[EpisodeRow]] = {}
-    for trial in trials:
-        first.setdefault(trial[0].scenario, trial)
-    return list(first.values())

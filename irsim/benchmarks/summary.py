@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
-from typing import get_args
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import TypeVar, get_args
 
 from irsim.benchmarks.incidents import incident_counts, incident_seeds, placed
 from irsim.benchmarks.suite import Protocol
@@ -27,6 +28,8 @@ __all__ = [
     "rows_of",
     "summaries_of",
 ]
+
+_T = TypeVar("_T")
 
 ALL = "(all)"
 """Name of the rows over all scenarios; with several protocols the rows of one are ``(all)/PROTOCOL``."""
@@ -162,11 +165,13 @@ def counts_once(episodes: Sequence[EpisodeRow], certain: Mapping[str, Collection
     return bool(episodes)
 
 
-def first_of_each(episodes: Sequence[EpisodeRow]) -> list[EpisodeRow]:
-    """The first episode of each scenario."""
-    first: dict[str, EpisodeRow] = {}
-    for one in episodes:
-        first.setdefault(one.scenario, one)
+def first_of_each(
+    entries: Sequence[_T], scenario_of: Callable[[_T], str] = operator.attrgetter("scenario")
+) -> list[_T]:
+    """The first entry of each scenario: of episodes, or of what ``scenario_of`` finds the scenario of."""
+    first: dict[str, _T] = {}
+    for one in entries:
+        first.setdefault(scenario_of(one), one)
     return list(first.values())
 
 
