@@ -34,6 +34,7 @@ def import_pedestrians(
     suite: Annotated[
         Path | None,
         typer.Option(
+            "--write-suite",
             metavar="FILE",
             show_default=False,
             help="Benchmark suite to write: windows of the recording are its scenarios.",

@@ -174,7 +174,10 @@ def import_(
     slope: Annotated[float, typer.Option(help="Steepest floor (deg).")] = 45.0,
     climb: Annotated[float, typer.Option(help="Highest step that is climbed (m).")] = 0.2,
     radius: Annotated[
-        float, typer.Option(help="Distance from obstacles that becomes occupied (m); robots have their own shape.")
+        float,
+        typer.Option(
+            "--inflate", help="Distance from obstacles that becomes occupied (m); robots have their own shape."
+        ),
     ] = 0.0,
     up: Annotated[
         Up,

@@ -13,10 +13,16 @@ OLD_NAMES: dict[str, dict[str, str]] = {
     "inspect": {"--from": "--first", "--to": "--last", "--robot": "--objects"},
     "diff": {"--run": "--simulate"},
     "train": {"--steps": "--decisions"},
-    "map import": {"--robot": "--add-robot"},
+    "map import": {"--robot": "--add-robot", "--radius": "--inflate"},
+    "audit": {"--policy": "--policy-file"},
     "bridge preview": {"--view": "--eye"},
     "bridge import-bag": {"--from": "--start", "--to": "--end"},
-    "bridge import-pedestrians": {"--from": "--start", "--to": "--end", "--robot": "--add-robot"},
+    "bridge import-pedestrians": {
+        "--from": "--start",
+        "--to": "--end",
+        "--robot": "--add-robot",
+        "--suite": "--write-suite",
+    },
 }
 """Command -> older name of an option, which another command uses for something else -> its name."""
 PANELS: dict[str, str] = {

@@ -40,7 +40,8 @@ def render(
         int | None,
         typer.Option(
             min=0,
-            help="Step that a picture shows (default 0: the start), or last step of an animation.",
+            help="Number of steps to simulate: a picture shows the state after them (default: 0, the start), an "
+            "animation ends with them.",
             show_default=False,
         ),
     ] = None,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal, TypeVar
@@ -89,10 +90,23 @@ def format_path(path: Path) -> str:
 
 
 def nearest(word: object, choices: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """The choice most similar to ``word``; None if none is similar enough."""
+    """The choice most similar to ``word``; None if none is similar enough.
+
+    A choice that has all words of ``word``, which has several, in whatever order is nearer than one of similar letters:
+    ``swap_circle`` means ``circle-swap``, and the last one of several.
+    """
     lowered = {str(choice).lower(): str(choice) for choice in choices}
+    asked = _words(str(word))
+    same = [choice for choice in lowered if len(asked) > 1 and asked <= _words(choice)]
+    if same and str(word).lower() not in lowered:
+        fewest = min(len(_words(choice)) for choice in same)
+        return lowered[[choice for choice in same if len(_words(choice)) == fewest][-1]]
     matches = difflib.get_close_matches(str(word).lower(), list(lowered), 1, cutoff)
     return lowered[matches[0]] if matches else None
+
+
+def _words(name: str) -> set[str]:
+    return set(re.findall("[a-z0-9]+", name.lower()))
 
 
 def suggestion(word: object, choices: Iterable[str], otherwise: Otherwise) -> str | Otherwise:

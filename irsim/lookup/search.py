@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 
 from irsim.bundled import templates
 from irsim.common.text import clean
+from irsim.learning.tasks.files import TASKS
 from irsim.lookup import full_text
 from irsim.lookup.answer import Answer, Key, TopicError, first_sentence
 from irsim.lookup.index import all_codes, code_answer
@@ -231,5 +232,6 @@ def all_topics(schema: Node) -> set[str]:
         *templates.names(),
         *ALL_GUIDES,
         *METRIC_TOPICS,
+        *(f"task.{name}" for name in TASKS.names()),
         *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names()),
     }

@@ -129,7 +129,7 @@ def test_arguments_of_the_command(tmp_path: Path) -> None:
         (["--replay", "0"], "--replay takes a number from 1 on or all, got 0"),
         (["--replay", "some"], "got some"),
         (["--salt", "a"], "salt draws the episodes that are run again"),
-        (["--policy", "mine.npz"], "--policy takes NAME=FILE, got mine.npz"),
+        (["--policy-file", "mine.npz"], "--policy-file takes NAME=FILE, got mine.npz"),
     ):
         done = CliRunner().invoke(app, ["audit", str(folder), *words])
         assert (done.exit_code, cause in done.output.replace("\n", " ")) == (2, True), done.output

@@ -27,7 +27,7 @@ MAP = "world: {width: 4, height: 4, obstacle_map: {name: perlin, resolution: 0.1
 COMMANDS = {
     "export": "export last --to csv -o {folder}/a.csv",
     "export-scene": "bridge export-scene scene.yaml -o {folder}/a.usda",
-    "import-pedestrians": "bridge import-pedestrians crowd.txt -o {folder}/a.yaml --suite {folder}/b.yaml",
+    "import-pedestrians": "bridge import-pedestrians crowd.txt -o {folder}/a.yaml --write-suite {folder}/b.yaml",
     "map-export": "map export map.yaml -o {folder}/a.yaml",
     "map-import": "map import grid.yaml -o {folder}/a.yaml",
     "new": "new head-on -o {folder}/a.yaml",

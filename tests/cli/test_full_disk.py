@@ -36,7 +36,7 @@ COMMANDS = {
     "map export": "map export mapped.yaml -o {disk}/ros.yaml",
     "pedestrians": "bridge import-pedestrians walk.txt -o {disk}/walk.yaml",
     "pedestrians in a scene": "bridge import-pedestrians walk.txt --into room.yaml -o {disk}/walk.yaml",
-    "suite of pedestrians": "bridge import-pedestrians walk.txt --suite {disk}/walk.yaml",
+    "suite of pedestrians": "bridge import-pedestrians walk.txt --write-suite {disk}/walk.yaml",
     "schema": "schema -o {disk}/schema.json",
     "replay": "replay last -o {disk}/replay.html",
 }

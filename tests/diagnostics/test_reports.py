@@ -80,6 +80,20 @@ def test_the_word_that_was_meant_is_found_in_any_case(word: object, meant: str |
     assert nearest(word, ["diff", "omni", "omni_angular", "acker"]) == meant
 
 
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [
+        ("swap_circle", "circle_swap_v2"),
+        ("polygons_random", "random-polygons"),
+        ("circle swap", "circle_swap_v2"),
+        ("circle-swap_v1", "circle_swap_v1"),
+        ("v2", None),
+    ],
+)
+def test_words_in_another_order_mean_the_name_that_has_them_all(word: str, meant: str | None) -> None:
+    assert nearest(word, ["crowdnav-circle", "circle_swap_v1", "circle_swap_v2", "random-polygons"]) == meant
+
+
 def test_places_are_told_as_in_python() -> None:
     assert format_path(("robot", 0, "shape", "vertices", 3, 1)) == "robot[0].shape.vertices[3][1]"
     assert format_path(()) == "(document)"

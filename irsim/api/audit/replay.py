@@ -107,7 +107,7 @@ def replay_episodes(
     except IrsimError as error:
         problems.add("submission-replay", RESULTS, f"an episode cannot be run again: {error}")
     if chosen and not replay.done:
-        fix = "give the files of the policies: --policy NAME=FILE"
+        fix = "give the files of the policies: --policy-file NAME=FILE"
         problems.add("submission-replay", RESULTS, "none of the drawn episodes could be run again", fix=fix)
     return replay
 
