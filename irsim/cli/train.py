@@ -14,7 +14,7 @@ from irsim.cli.guard import INVALID, again, going_on
 from irsim.cli.output import console, show_written
 from irsim.common.extras import require
 from irsim.learning.tasks.files import open_task
-from irsim.learning.training.run_folder import SETTINGS_FILE, RunFolder
+from irsim.learning.training.run_folder import RunFolder
 from irsim.learning.training.settings import read_settings
 from irsim.validation.file_reports import task_report
 
@@ -133,8 +133,8 @@ def train(
 
 def _go_on(out: Path, threads: int, workers: int) -> str:
     """How an interrupted training goes on."""
-    if not (out / SETTINGS_FILE).is_file():
-        return f"again: {again()}"
+    if not RunFolder(out).has_rounds():
+        return f"no round was finished; again: {again()}"
     how = ["-o", str(out)]
     for option, value in (("--threads", threads), ("--workers", workers)):
         how += [option, str(value)] if value > 1 else []

@@ -131,3 +131,14 @@ def test_an_interrupted_training_says_how_it_goes_on(workers: str, tmp_path: Pat
     assert said.endswith(f"go on: irsim train --resume -o taught{more}")
     follow(tmp_path, said)
     assert (tmp_path / "taught" / "best.zip").is_file()
+
+
+@pytest.mark.learn
+@pytest.mark.parametrize("moment", [1, 3])
+def test_a_training_without_a_finished_round_begins_again(moment: int, tmp_path: Path) -> None:
+    (tmp_path / "task.yaml").write_text(TASK, encoding="utf-8")
+    few = ["--set", "slots=8", "--set", "rollout=16", "--set", "round_updates=1", "--decisions", "300"]
+    said = interrupted(tmp_path, moment, "train", "task.yaml", "-o", "taught", *few)
+    assert said.startswith("interrupted; no round was finished; again: irsim train task.yaml -o taught --set slots=8")
+    follow(tmp_path, said)
+    assert (tmp_path / "taught" / "best.zip").is_file()

@@ -82,7 +82,7 @@ class RunFolder:
         Raises:
             ArgumentError: The folder holds a training that has finished a round.
         """
-        if self._progress.exists():
+        if self.has_rounds():
             raise ArgumentError(
                 f"{self.path} holds a training", "resume it with --resume, or name another folder with -o"
             )
@@ -150,9 +150,13 @@ class RunFolder:
                 self.keep(settings)
         return settings
 
+    def has_rounds(self) -> bool:
+        """Whether a round was finished."""
+        return self._progress.is_file()
+
     def rounds(self) -> list[dict[str, Any]]:
         """Facts of each finished round."""
-        if not self._progress.is_file():
+        if not self.has_rounds():
             return []
         try:
             rounds = read_json_lines(self._progress)
