@@ -83,9 +83,12 @@ def test_the_episodes_of_the_guide_run_on_all_cores(folder: Path) -> None:
     controller, program = fences(text, "python")[:2]
     (folder / "controller.py").write_text(controller, encoding="utf-8")
     (folder / "program.py").write_text(program, encoding="utf-8")
-    first, second = execute(["python", "program.py"], folder).splitlines()[-2:]
-    assert "of 6 episodes succeeded" in first
-    assert [row[0] for row in ast.literal_eval(second)] == list(range(6))
+    [hall] = fences((ROOT / "README.md").read_text(encoding="utf-8"), "yaml")
+    for scene in (HALL, hall):
+        (folder / "hall.yaml").write_text(scene, encoding="utf-8")
+        first, second = execute(["python", "program.py"], folder).splitlines()[-2:]
+        assert [row[0] for row in ast.literal_eval(second)] == list(range(6))
+    assert "6 of 6 episodes succeeded" in first
 
 
 def test_the_script_works_as_written(folder: Path) -> None:
