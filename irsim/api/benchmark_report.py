@@ -8,6 +8,7 @@ import shlex
 import shutil
 import tempfile
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -84,7 +85,7 @@ def write_report(result: BenchmarkResult, folder: Path) -> Report:
         if has_tables():
             write_table(result, plan.hash, folder / TABLE)
         write_atomically(folder / MARKDOWN, markdown(result, notes))
-        write_atomically(folder / PAGE, page(result, shown, notes))
+        write_atomically(folder / PAGE, page(result, shown, notes, partial(_command, plan, result)))
     except OSError as error:
         code = code_of(error, "not-writable")
         raise RunError(code, f"{folder}: {error.strerror}", "make room, then give --resume") from None
@@ -107,12 +108,13 @@ def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: Bench
     label = policy_labels(result)[one.behavior]
     words = re.sub(r"[^\w.-]+", "-", f"{one.scenario}-{label}").strip("-.")  # a policy may be the path of a file
     name = f"{words[-MAX_NAME:]}-{one.seed}.html"
-    replayed = _replay(scenario, one, plan, policy, folder / REPLAYS / name)
+    title = f"{one.scenario}, {label}, seed {one.seed}"
+    replayed = _replay(scenario, one, plan, policy, folder / REPLAYS / name, title)
     caption = f"seed {one.seed}: {_how_it_failed(one, replayed)} ({one.scenario}, {label})"
-    return Shown(caption, png, "" if replayed is None else f"{REPLAYS}/{name}", _command(plan, one, result))
+    return Shown(caption, png, "" if replayed is None else f"{REPLAYS}/{name}", _command(plan, result, one))
 
 
-def _command(plan: Plan, one: EpisodeRow, result: BenchmarkResult) -> str:
+def _command(plan: Plan, result: BenchmarkResult, one: EpisodeRow) -> str:
     """The command that runs and records an episode again, in the folder in which the benchmark was started."""
     path, policy, perturb = one.scenario, one.behavior, plan.perturb
     if isinstance(result, SuiteResult) and plan.suite is not None:
@@ -129,24 +131,28 @@ def _command(plan: Plan, one: EpisodeRow, result: BenchmarkResult) -> str:
 def _how_it_failed(one: EpisodeRow, replayed: RunResult | None) -> str:
     """The first robot that failed, how and when, and how many others did."""
     robot, how = next(iter(one.failures.items()), ("", one.outcome))
-    times = [
-        event.time for event in (replayed.events if replayed is not None else ())
-        if event.kind == "collision" and robot in (event.object, event.partner)
+    contacts = [
+        event for event in (replayed.events if replayed is not None else ())
+        if event.kind == "collision" and event.object in one.failures
     ]  # fmt: skip
+    if contacts:  # the first one in time, which the replay tells, too
+        robot, how = contacts[0].object, f"collision with {contacts[0].partner!r}"
     hit = how.startswith("collision")
-    when = f"at {times[0]:.1f} s" if hit and times else f"after {one.sim_time:.1f} s"
+    when = f"at {contacts[0].time:.1f} s" if contacts else f"after {one.sim_time:.1f} s"
     words = how.replace("collision", "collided") if hit else "had not arrived"
     others = f", and {plural(len(one.failures) - 1, 'other')} failed" if len(one.failures) > 1 else ""
     return f"{robot} {words} {when}{others}".strip()
 
 
-def _replay(scenario: PlannedScenario, one: EpisodeRow, plan: Plan, policy: Policy, target: Path) -> RunResult | None:
+def _replay(
+    scenario: PlannedScenario, one: EpisodeRow, plan: Plan, policy: Policy, target: Path, title: str
+) -> RunResult | None:
     """Run an episode again, and write its replay; None if a map cannot be copied."""
     target.parent.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as place:
         again = record_episode(scenario, one.seed, plan, policy, Path(place) / "run", steps=one.steps)
         if again is not None:
-            replay(Path(place) / "run", target)
+            replay(Path(place) / "run", target, title=title)
     return again
 
 

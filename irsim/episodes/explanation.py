@@ -228,13 +228,13 @@ def _others_standing_message(facts: EpisodeFacts) -> str | None:
     return f"{len(standing)} of {len(moving)} moving obstacles stand still short of their goals (first {name}, {place})"
 
 
-def reason_message(facts: EpisodeFacts, robots: list[RobotResult], source: HorizonSource) -> str:
+def reason_message(facts: EpisodeFacts, robots: list[RobotResult], source: HorizonSource | None) -> str:
     """Say why an episode failed: contacts between steps, the first collision, and what late robots were doing.
 
     Args:
         facts: The episode.
         robots: Results of its robots.
-        source: Where its time limit comes from.
+        source: Where its time limit comes from; None if the first collision ended it before.
     """
     if not robots:
         return "there are no robots"
@@ -244,7 +244,9 @@ def reason_message(facts: EpisodeFacts, robots: list[RobotResult], source: Horiz
         others = len(collided) - 1
         reasons.append(hit + (f" (in all {others + 1} robots collided)" if others else "") + _horizons(facts, collided))
     rows = {record.name: row for row, record in facts.robots.items()}
-    limit = f"the time limit of {seconds(facts.time)} ({_LIMIT_SOURCES[source]})"
+    limit = f"{seconds(facts.time)}, when the run ended (until: first_collision),"
+    if source is not None:
+        limit = f"the time limit of {seconds(facts.time)} ({_LIMIT_SOURCES[source]})"
     late = [robot for robot in robots if robot.outcome == "timeout" and robot.name not in facts.parked]
     if late:
         shown = late[:_MAX_NAMED]

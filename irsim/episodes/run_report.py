@@ -134,8 +134,11 @@ def run_result(
     elif "collision" in ends:
         outcome = "collision"
     reason: str | None = None
-    if outcome != "success":
-        reason = reason_message(facts, robots, plan.source) if lost is None else f"{lost.message}; the run ended"
+    if lost is not None and outcome != "success":
+        reason = f"{lost.message}; the run ended"
+    elif outcome != "success":
+        touched = plan.until == "first_collision" and facts.steps < plan.horizon
+        reason = reason_message(facts, robots, None if touched else plan.source)
     summary, lost_code = _summary(facts, robots, plan, left, zones), _lost_code(lost)
     if lost_code is not None:
         summary += f"; the {LOST_THINGS[lost_code]} was lost, which ended the run"

@@ -109,6 +109,17 @@ def test_failures_say_why(scenario: str, reason: str) -> None:
     assert reason in said
 
 
+def test_a_run_that_a_collision_ended_does_not_name_the_time_limit() -> None:
+    late = f"robot:\n  - {{name: late, kinematics: {{name: diff}}, state: [1, 1], goal: [30, 1]{DASH}}}\n"
+    crate = "obstacle:\n  - {name: crate, state: [2.5, 3], shape: {name: circle}}\n"
+    scene = text(19, world=", time_limit: 5").replace("robot:\n", late) + crate
+    ended = irsim.run(text=scene, until="first_collision")
+    assert ended.reason is not None
+    assert "'rover' hit 'crate' at " in ended.reason
+    assert f"at {ended.sim_time:g} s, when the run ended (until: first_collision), 'late' still moved" in ended.reason
+    assert "at the time limit of 5 s (world.time_limit) 'late' still moved" in str(irsim.run(text=scene).reason)
+
+
 CROSSER = """\
 obstacle:
   - {kinematics: {name: omni}, state: [1, 1, 0], goal: [3, 1, 0], vel_max: [1, 1], behavior: {name: dash}}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
@@ -30,8 +30,8 @@ from irsim.benchmarks.report.markdown import (
 from irsim.benchmarks.report.rows import RANKS, policy_labels
 from irsim.benchmarks.summary import is_summary
 from irsim.common.hashing import digest
-from irsim.common.text import clean
-from irsim.results.benchmark import BenchmarkResult
+from irsim.common.text import clean, listed
+from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.runs.page_colors import scheme_rules
 
 __all__ = ["Shown", "page"]
@@ -54,10 +54,21 @@ class Shown:
     again: str = ""
 
 
-def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[str] = ()) -> str:
+def page(
+    result: BenchmarkResult,
+    shown: Sequence[Shown] = (),
+    notes: Sequence[str] = (),
+    again: Callable[[EpisodeRow], str] | None = None,
+) -> str:
     """The page: facts, tables, charts, worst episodes, notes, and how to run it again.
 
     Rows over several scenarios come first in every table.
+
+    Args:
+        result: The result.
+        shown: Episodes as pictures.
+        notes: Further notes.
+        again: The command that runs an episode again.
     """
     labels, columns = policy_labels(result), columns_of(result)
     title = _shown(title_of(result))
@@ -86,6 +97,7 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
         *(f'<p class="note">{_prose(note)}</p>' for note in (*result.notes, *notes)),
         "<h2>Charts</h2>" if figures else "", f'<div class="charts">{"".join(figures)}</div>',
         f"<h2>Episodes that failed</h2><p>{len(worst)} of {failed:,} are shown.</p>" if worst else "", *worst,
+        "<h3>All failed seeds</h3>" + _table(failures) if (failures := _failures(result, labels, again)) else "",
         "<h2>Run it again</h2>", f"<pre>{_shown(result.reproduce)}</pre><p>{_shown(program_of(result))}</p>",
         f"<h2>Cite this run</h2><p>{_prose(citation_of(result))}</p>",
     ]  # fmt: skip
@@ -94,6 +106,24 @@ def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[s
     return _SHELL.format(title=title, body=body, script=_SORT, hash=allowed, colors=colors)
 
 
+def _failures(
+    result: BenchmarkResult, labels: Mapping[str, str], again: Callable[[EpisodeRow], str] | None
+) -> Table | None:
+    """Seeds that failed, by scenario, policy and outcome, and the command of the first one; None without any."""
+    failed: dict[tuple[str, str, str], list[EpisodeRow]] = {}
+    for one in result.episodes:
+        if one.outcome in ("collision", "timeout"):
+            failed.setdefault((one.scenario, labels[one.behavior], one.outcome), []).append(one)
+    heads = ["scenario", "policy", "outcome", "failed", "seeds"] + ["the first one again"] * (again is not None)
+    rows = [
+        [*key, str(len(own)), listed([str(one.seed) for one in own], MAX_SEEDS), *([again(own[0])] if again else [])]
+        for key, own in failed.items()
+    ]
+    return (heads, rows) if rows else None
+
+
+MAX_SEEDS = 20
+"""Number of failed seeds of a row that are named."""
 _COLORS = ("page", "card", "line", "ink", "muted", "near")
 """Colours of the style `modern` that the page uses."""
 _WORDS = {

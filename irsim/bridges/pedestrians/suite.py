@@ -100,8 +100,8 @@ def suite_text(
     title = f"A robot crosses recorded pedestrians of {layout.source}"
     head = [
         f"# {len(made.starts)} windows of {made.length:g} s of {json.dumps(layout.source)}, written by `irsim bridge",
-        "# import-pedestrians --write-suite`. Names of scenarios say when they start. Each seed draws another start and goal",
-        "# of the robot; no pedestrian makes way for it.",
+        "# import-pedestrians --write-suite`. Names of scenarios say when they start. Each seed draws another start",
+        "# and goal of the robot; no pedestrian makes way for it.",
         "",
         f"suite: {(word if word[:1].isalpha() else f'recorded_{word}')[:_NAME]}",
         "version: 1",

@@ -72,11 +72,12 @@ class Packed:
     head: dict[str, Any]
 
 
-def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
+def pack_run(run: Run, *, title: str | None = None, limits: Limits | None = None) -> Packed:
     """Pack a run and the shapes of its objects.
 
     Args:
         run: The recorded run; an interrupted run is shown as far as it was recorded.
+        title: Title of the page; default: the name of the scenario, or the id of the run.
         limits: Limits of the reader of its scenario.
 
     Raises:
@@ -88,7 +89,7 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
     with initial_scene(run, limits) as env:
         about = {
             "run_id": run.id,
-            "title": run.id if run.meta.get("scenario") is None else clean(env.simulation.scenario.name),
+            "title": clean(title or (run.id if run.meta.get("scenario") is None else env.simulation.scenario.name)),
             "status": run.status,
             **_ending(run),
             "seed": int(run.meta["seed"]),

@@ -24,6 +24,7 @@ def replay(
     out: str | Path | None = None,
     *,
     workspace: str | Path | None = None,
+    title: str | None = None,
     limits: Limits | None = None,
 ) -> ReplayResult:
     """Write a recorded run as one HTML page that plays in any browser, without a network.
@@ -32,6 +33,7 @@ def replay(
         run: Id of the run, its folder, or ``last``.
         out: File to write; default: ``<id>.html`` in the current directory. An existing file is replaced.
         workspace: Folder whose ``.irsim/runs`` holds the run; default: the current directory.
+        title: Title of the page; default: the name of the scenario.
         limits: Limits of the reader of the scenario.
 
     Raises:
@@ -42,7 +44,7 @@ def replay(
     opened = run if isinstance(run, Run) else open_run(run, workspace)
     target = Path(f"{opened.id}.html") if out is None else Path(out)
     check_suffix(target, SUFFIXES)
-    packed = pack_run(opened, limits=limits)
+    packed = pack_run(opened, title=title, limits=limits)
     text = page(packed.data, title=f"{clean(packed.head['title'])} · irsim replay")
     try:
         write_atomically(target, text)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import html
+import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -105,3 +108,26 @@ def test_charts_and_replays_say_what_they_show(report: Path, watched: Watched) -
     assert any("time to goal [s]: median" in title for title in titles)
     captions = page.evaluate("[...document.querySelectorAll('.episode figcaption a')].map(link => link.textContent)")
     assert any(text.startswith("seed 0: ") and "collided with 'wall' at " in text for text in captions)
+
+
+def test_all_failed_seeds_have_a_command(report: Path, watched: Watched) -> None:
+    page = watched.open(report, READY)
+    table = page.locator("h3", has_text="All failed seeds").locator("xpath=following-sibling::div[1]/table")
+    rows = [row.split("\t") for row in table.locator("tbody").inner_text().splitlines()]
+    result = json.loads((report.parent / "results.json").read_text(encoding="utf-8"))
+    failed = [one for one in result["episodes"] if one["outcome"] in ("collision", "timeout")]
+    assert sum(int(row[3]) for row in rows) == len(failed) > 0
+    first = next(one for one in failed if one["scenario"] == rows[0][0])
+    assert rows[0][5].startswith("irsim run ")
+    assert f"/{first['scenario']} --seed {first['seed']} --policy {rows[0][1]} --record" in rows[0][5]
+
+
+def test_a_link_and_its_replay_say_the_same(report: Path, watched: Watched) -> None:
+    links = re.findall(r'<a href="(replays/[^"]+)">([^<]*)</a>', report.read_text(encoding="utf-8"))
+    target, told = next((target, html.unescape(text)) for target, text in links if "collided with" in text)
+    form = r"seed (\d+): (\S+) collided with '(.*)' at ([\d.]+) s.* \((.*)\)"
+    seed, who, other, when, where = re.findall(form, told)[0]
+    opened = watched.open(report.parent / target, "document.getElementById('facts').textContent")
+    assert opened.inner_text("#title") == f"{where}, seed {seed}"
+    hit = re.findall(rf"'{who}' hit '{other}' at ([\d.]+) s", opened.inner_text("#facts"))[0]
+    assert float(when) == pytest.approx(float(hit), abs=0.051)
