@@ -52,6 +52,16 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, list[Any]
     return dict(zip(CELLS, outputs, strict=True)), folder
 
 
+def test_notebooks_and_editors_complete_names_and_arguments() -> None:
+    import jedi
+
+    begin = "import irsim\nenv = irsim.make('scene.yaml')\n"
+    for text, name in (("irsim.ma", "make"), ("env.get_lidar_s", "get_lidar_scan")):
+        assert [one.name for one in jedi.Script(begin + text).complete(3, len(text))] == [name]
+    [call] = jedi.Script(f"{begin}irsim.make(").get_signatures(3, 11)
+    assert {"world_name", "display", "seed"} <= {one.name for one in call.params}
+
+
 def only(outputs: list[Any]) -> Any:
     """The data of the only output of a cell."""
     [output] = outputs

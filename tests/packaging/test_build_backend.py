@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import importlib.machinery
 import importlib.util
 import os
 import subprocess
@@ -11,6 +12,7 @@ import sys
 import zipfile
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -97,6 +99,21 @@ def test_a_missing_compiler_package_is_named(backend: ModuleType, bare: Path, mo
     monkeypatch.setitem(sys.modules, "ziglang", None)
     with pytest.raises(SystemExit, match="ziglang"):
         backend.build_wheel(str(bare))
+
+
+def test_loaders_of_an_editable_install_hand_out_source(backend: ModuleType) -> None:
+    call = "    def __getattr__(self, name: str) -> object:\n        return getattr(self._skbuild_loader, name)\n"
+    begin = "    def __init__(self, loader: object) -> None:\n        self._skbuild_loader = loader\n\n"
+    finder = f"class Wrapper:\n{begin}{call}".encode()
+    changed = backend.with_source(finder)
+    assert backend.with_source(changed) == changed
+    made: dict[str, Any] = {}
+    exec(changed, made)
+    loader = importlib.machinery.SourceFileLoader("here", __file__)
+    assert "get_source" in vars(made["Wrapper"])
+    assert made["Wrapper"](loader).get_source("here") == Path(__file__).read_text(encoding="utf-8")
+    assert made["Wrapper"](loader).path == __file__
+    assert backend.with_source(b"x = 1\n") == b"x = 1\n"
 
 
 METADATA = b"Metadata-Version: 2.4\nName: x\nVersion: 1\nRequires-Dist: numpy>=1.26\nRequires-Dist: rich\n\nText\n"

@@ -16,6 +16,7 @@ import base64
 import hashlib
 import importlib.util
 import os
+import re
 import shlex
 import shutil
 import stat
@@ -24,7 +25,7 @@ import sys
 import sysconfig
 import tempfile
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -109,17 +110,35 @@ def with_runtime(metadata: bytes) -> bytes:
 
 
 def require_runtime(wheel: Path) -> None:
-    """Let a wheel require ``RUNTIME``: its metadata and their hash are replaced, everything else stays as it is."""
+    """Let a wheel require ``RUNTIME``."""
+    change_entry(wheel, r".*\.dist-info/METADATA", with_runtime)
+
+
+def with_source(finder: bytes) -> bytes:
+    """The module that finds the files of an editable install, whose loaders then hand out source, as Python's do.
+
+    Editors and notebooks that complete names with jedi skip a package if the class of its loader has no
+    ``get_source``, and scikit-build-core wraps loaders in a class that has none.
+    """
+    head = b"    def __getattr__(self, name: str) -> object:\n        return getattr(self._skbuild_loader, name)\n"
+    asked = head.replace(b"__getattr__", b"get_source").replace(b"_loader, name)", b"_loader, 'get_source')(name)")
+    return finder if asked in finder else finder.replace(head, head + b"\n" + asked, 1)
+
+
+def change_entry(wheel: Path, pattern: str, change: Callable[[bytes], bytes]) -> None:
+    """Replace the file of a wheel that has such a name, if one has, and its hash; everything else stays as it is."""
     with zipfile.ZipFile(wheel) as archive:
         entries = [(entry, archive.read(entry)) for entry in archive.infolist()]
-    [name] = [entry.filename for entry, _ in entries if entry.filename.endswith(".dist-info/METADATA")]
-    [metadata] = [with_runtime(data) for entry, data in entries if entry.filename == name]
-    digest = base64.urlsafe_b64encode(hashlib.sha256(metadata).digest()).rstrip(b"=").decode()
-    row = f"{name},sha256={digest},{len(metadata)}"
+    found = [(entry.filename, change(data)) for entry, data in entries if re.fullmatch(pattern, entry.filename)]
+    if not found:
+        return
+    [(name, changed)] = found
+    digest = base64.urlsafe_b64encode(hashlib.sha256(changed).digest()).rstrip(b"=").decode()
+    row = f"{name},sha256={digest},{len(changed)}"
     with zipfile.ZipFile(wheel, "w") as archive:
         for entry, data in entries:
             if entry.filename == name:
-                data = metadata
+                data = changed
             elif entry.filename.endswith(".dist-info/RECORD"):
                 rows = data.decode().splitlines()
                 data = "".join(f"{row if old.startswith(f'{name},') else old}\n" for old in rows).encode()
@@ -131,7 +150,9 @@ def build_editable(
 ) -> str:
     """Build the wheel of an editable install into ``wheel_directory``; returns its file name."""
     with _compiler():
-        return skbuild.build_editable(wheel_directory, _plain(config_settings), metadata_directory)
+        name = skbuild.build_editable(wheel_directory, _plain(config_settings), metadata_directory)
+    change_entry(Path(wheel_directory, name), r"_editable_skbc_\w+\.py", with_source)
+    return name
 
 
 def chosen_by_user(environ: Mapping[str, str]) -> bool:
