@@ -1385,29 +1385,6 @@ class Painter:
         clip: tuple[int, int, int, int],
         view: tuple[float, float, float, float, float, float],
     ) -> None: ...
-    def circle(
-        self,
-        pixels: NDArray[np.uint8],
-        x: float,
-        y: float,
-        radius: float,
-        fill: tuple[float, float, float, float],
-        edge: tuple[float, float, float, float],
-        width: float,
-    ) -> None:
-        """Paint a disc and its outline, `width` pixels wide."""
-
-    def polygon(
-        self,
-        pixels: NDArray[np.uint8],
-        points: Floats,
-        fill: tuple[float, float, float, float],
-        edge: tuple[float, float, float, float],
-        width: float,
-        join: str,
-    ) -> None:
-        """Paint a polygon and its outline; `join` is miter, round or bevel."""
-
     def glow(
         self,
         pixels: NDArray[np.uint8],
@@ -1419,28 +1396,24 @@ class Painter:
     ) -> None:
         """Paint a polygon that is bright at (x, y), paler with the distance, and ends softly at `reach` [m]."""
 
-    def discs(
+    def shapes(
         self,
         pixels: NDArray[np.uint8],
         points: Floats,
-        radius: float,
-        fill: tuple[float, float, float, float],
-        edge: tuple[float, float, float, float],
-        width: float,
-    ) -> None:
-        """Paint discs of one radius around `points` (N, 2), with outlines `width` pixels wide."""
-
-    def line(
-        self,
-        pixels: NDArray[np.uint8],
-        points: Floats,
-        edge: tuple[float, float, float, float],
-        width: float,
+        ranges: NDArray[np.int64],
+        radii: Floats,
+        inks: NDArray[np.uint8],
+        widths: Floats,
+        closed: bool,
         join: str,
         round_caps: bool,
         dashes: Sequence[float] = ...,
     ) -> None:
-        """Paint a line through points (N, 2); `dashes` are lengths of dashes and of the gaps after them [px]."""
+        """Paint shapes, one over the other, whose `points` (K, 2) lie in one array, from and to `ranges` (N, 2).
+
+        A shape is the circle about its point if its radius (N,) is at least 0, else a polygon if `closed`, else a line.
+        `inks` (N, 2, 4) are the colours of fill and edge, 0..255; `widths` (N,) are those of edges [px].
+        """
 
     def beams(
         self,
@@ -1478,6 +1451,49 @@ def copy_boxes(
     source: NDArray[np.uint8], target: NDArray[np.uint8], boxes: Sequence[tuple[int, int, int, int]]
 ) -> None:
     """Copy parts of a picture to another of the same size."""
+
+def trails(
+    state: State, rows: Sequence[int], offsets: Sequence[float], ages: Sequence[int], longest: int, least: float
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Return the trails of rows as lines in pieces.
+
+    Args:
+        state: The state, which keeps its history.
+        rows: Rows (N).
+        offsets: How far each line runs to the left of the position of its object (N) [m].
+        ages: Borders (K + 1) of the pieces [steps], the oldest first; -1 is the start.
+        longest: How far back trails reach [steps]; -1 is the start.
+        least: Least distance from one point to the next [m]; borders of pieces are always points.
+
+    Returns:
+        (P, 2) points [m], and (N, K, 2) the first and the end of the points of each piece, which may have none.
+    """
+
+def place_names(
+    wishes: Floats,
+    height: float,
+    inside: tuple[float, float, float, float],
+    taken: Floats,
+    walls: Floats,
+    plans: Floats,
+    plan_ranges: NDArray[np.int64],
+    trails: Floats,
+) -> list[tuple[int, float, float, float, float]]:
+    """Find places for names beside the things that they name, the most important first.
+
+    Args:
+        wishes: (N, 5) middle of the thing x, y, half its width and height, width of the name.
+        height: Height of all names.
+        inside: Left, bottom, right and top of the part of the picture in which names stay.
+        taken: (T, 4) boxes that names may not overlap.
+        walls: (W, 4) boxes that they should not overlap.
+        plans: (P, 2) points of lines that they should not cover, one line after the other.
+        plan_ranges: (L, 2) first and end of the points of each line.
+        trails: (Q, 2) points that they should not cover.
+
+    Returns:
+        For each name the number of its place, of which 8 are at each of three distances, or -1, and its box.
+    """
 
 def rgb_rows(pixels: NDArray[np.uint8]) -> bytes:
     """Return a zero and the red, green and blue of all pixels for each row, which is what PNG compresses."""

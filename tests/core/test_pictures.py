@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,18 @@ def painted(paint: Callable[[core.Painter, np.ndarray], None]) -> np.ndarray:
     return pixels
 
 
+def shape(
+    painter: core.Painter, pixels: np.ndarray, points: np.ndarray, fill: Any, edge: Any, width: float, **how: Any
+) -> None:
+    """Paint one shape: the circle of a ``radius``, a polygon if it is ``closed``, else a line."""
+    style = {"closed": True, "join": "miter", "round_caps": False, **how}
+    radius = style.pop("radius", -1.0)
+    inks = (np.array([[fill, edge]]) * 255 + 0.5).astype(np.uint8)
+    painter.shapes(
+        pixels, points, np.array([[0, len(points)]]), np.array([radius]), inks, np.array([width]), **style
+    )  # fmt: skip
+
+
 def closed(points: np.ndarray) -> Path:
     codes = [Path.MOVETO, *[Path.LINETO] * (len(points) - 1), Path.CLOSEPOLY]
     return Path(np.concatenate([points, points[:1]]), codes)
@@ -80,7 +93,7 @@ def test_a_circle_is_that_of_agg(place: tuple[float, float, float], width: float
     x, y, radius = place
     unit = Path.unit_circle()
     path = Path(np.asarray(unit.vertices) * radius + (x, y), unit.codes)
-    mine = painted(lambda painter, pixels: painter.circle(pixels, x, y, radius, GREEN, INK, width))
+    mine = painted(lambda painter, pixels: shape(painter, pixels, np.array([(x, y)]), GREEN, INK, width, radius=radius))
     # Agg turns a circle into few straight pieces, up to a tenth of a pixel beside it.
     assert_alike(agg_path(path, GREEN, INK, width), mine, 40, 0.1)
 
@@ -90,7 +103,7 @@ def test_a_circle_is_that_of_agg(place: tuple[float, float, float], width: float
 @pytest.mark.parametrize("name", POLYGONS)
 def test_a_polygon_is_that_of_agg(name: str, width: float, join: str) -> None:
     points = POLYGONS[name]
-    mine = painted(lambda painter, pixels: painter.polygon(pixels, points, GREEN, INK, width, join))
+    mine = painted(lambda painter, pixels: shape(painter, pixels, points, GREEN, INK, width, join=join))
     assert_alike(agg_path(closed(points), GREEN, INK, width, join), mine, 60, 0.06)
 
 
@@ -99,7 +112,8 @@ def test_a_polygon_is_that_of_agg(name: str, width: float, join: str) -> None:
 def test_a_line_is_that_of_agg(width: float, round_caps: bool) -> None:
     along = np.linspace(0, 5, 60)
     points = np.stack([60 + 35 * along, 100 + 40 * np.sin(along)], axis=1)
-    mine = painted(lambda painter, pixels: painter.line(pixels, points, GREEN, width, "round", round_caps))
+    how = {"closed": False, "join": "round", "round_caps": round_caps}
+    mine = painted(lambda painter, pixels: shape(painter, pixels, points, NONE, GREEN, width, **how))
     assert_alike(agg_path(Path(points), None, GREEN, width, "round", "round" if round_caps else "butt"), mine, 60, 0.02)
 
 
@@ -124,12 +138,74 @@ def test_a_shape_that_is_not_finite_is_left_out() -> None:
 
     def paint(painter: core.Painter, pixels: np.ndarray) -> None:
         for points in (line, np.full((3, 2), math.nan), line[:1], line[:0]):
-            painter.line(pixels, points, INK, 2.0, "round", True)
-            painter.polygon(pixels, points, INK, INK, 2.0, "miter")
+            shape(painter, pixels, points, NONE, INK, 2.0, closed=False, join="round", round_caps=True)
+            shape(painter, pixels, points, INK, INK, 2.0)
 
     painted(paint)
-    painted(lambda painter, pixels: painter.circle(pixels, math.nan, 5.0, 3.0, INK, INK, 1.0))
-    painted(lambda painter, pixels: painter.circle(pixels, 50.0, 50.0, 1e7, NONE, INK, 1.0))
+    lost, near = np.array([(math.nan, 5.0)]), np.array([(50.0, 50.0)])
+    painted(lambda painter, pixels: shape(painter, pixels, lost, INK, INK, 1.0, radius=3.0))
+    painted(lambda painter, pixels: shape(painter, pixels, near, NONE, INK, 1.0, radius=1e7))
+
+
+def test_shapes_of_one_call_cover_one_another_in_their_order() -> None:
+    points = np.concatenate([ARROW, [(100.0, 60.0)], SQUARE])
+    ranges = np.array([(0, 7), (7, 8), (8, 12), (8, 8)])
+    radii, widths = np.array([-1.0, 15.0, -1.0, -1.0]), np.array([2.0, 0.0, 3.0, 1.0])
+    looks = [(GREEN, INK), (INK, NONE), (GREEN, INK), (INK, INK)]
+    inks = (np.array(looks) * 255 + 0.5).astype(np.uint8)
+    together = painted(lambda p, pixels: p.shapes(pixels, points, ranges, radii, inks, widths, True, "miter", False))
+
+    def one_by_one(painter: core.Painter, pixels: np.ndarray) -> None:
+        for (begin, end), radius, (fill, edge), width in zip(ranges, radii, looks, widths, strict=True):
+            shape(painter, pixels, points[begin:end], fill, edge, width, radius=radius)
+
+    assert (together == painted(one_by_one)).all()
+    assert together[HEIGHT - 60, 100, :3].tolist() != [255, 255, 255]
+
+
+def test_shapes_whose_arrays_disagree_are_refused() -> None:
+    painter, pixels = core.Painter((5, 4), (0, 0, 5, 4), (1, 0, 0, 0, -1, 4)), np.zeros((4, 5, 4), np.uint8)
+    one, inks = np.ones(1), np.zeros((1, 2, 4), np.uint8)
+    for ranges, message in (((0, 3), "within the points"), ((2, 1), "within the points"), ((-1, 1), "within")):
+        with pytest.raises(ValueError, match=message):
+            painter.shapes(pixels, np.zeros((2, 2)), np.array([ranges]), one, inks, one, True, "miter", False)
+    with pytest.raises(ValueError, match="one radius"):
+        painter.shapes(pixels, np.zeros((2, 2)), np.array([(0, 1)]), np.ones(2), inks, one, True, "miter", False)
+    with pytest.raises(ValueError, match="dashes and gaps"):
+        painter.shapes(pixels, np.zeros((2, 2)), np.array([(0, 1)]), one, inks, one, False, "miter", False, [1.0])
+
+
+NAMES = {
+    "height": 10.0, "inside": (0.0, 0.0, 300.0, 200.0), "taken": np.empty((0, 4)), "walls": np.empty((0, 4)),
+    "plans": np.empty((0, 2)), "plan_ranges": np.empty((0, 2), np.int64), "trails": np.empty((0, 2)),
+}  # fmt: skip
+THING = (150.0, 100.0, 8.0, 8.0, 40.0)
+ABOVE, BELOW = (130.0, 112.0, 170.0, 122.0), (130.0, 78.0, 170.0, 88.0)
+
+
+def test_a_name_stands_above_its_thing_unless_something_is_there() -> None:
+    def place(**around: Any) -> tuple[float, ...]:
+        return core.place_names(np.array([THING]), **{**NAMES, **around})[0]
+
+    assert place() == (0, *ABOVE)
+    assert place(taken=np.array([(120.0, 121.0, 135.0, 140.0)])) == (1, *BELOW)
+    assert place(walls=np.array([(120.0, 121.0, 135.0, 140.0)])) == (1, *BELOW)
+    assert place(walls=np.array([(0.0, 0.0, 300.0, 200.0)])) == (0, *ABOVE), "everything is over a wall"
+    crossing = {"plans": np.array([(140.0, 0.0), (140.0, 95.0), (150.0, 190.0)]), "plan_ranges": np.array([(0, 3)])}
+    assert place(**crossing)[0] == 2, "right of the thing, as a line runs above and below it"
+    assert place(trails=np.array([(131.0, 113.0)]))[0] == 1
+    assert place(inside=(140.0, 90.0, 300.0, 111.0))[0] == 2
+    assert place(inside=(0.0, 0.0, 30.0, 30.0))[0] == -1
+
+
+def test_names_avoid_one_another_and_move_away_where_it_is_crowded() -> None:
+    found = core.place_names(np.array([THING] * 20), **NAMES)
+    numbers = [number for number, *_ in found if number >= 0]
+    assert numbers == sorted(numbers)
+    assert [number for number, *_ in found[len(numbers) :]] == [-1] * (20 - len(numbers))
+    boxes = [box for number, *box in found if number >= 0]
+    assert len(boxes) > 8
+    assert not any(a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3] for a, b in combinations(boxes, 2))
 
 
 def test_boxes_of_change() -> None:
@@ -165,7 +241,7 @@ def test_pictures_of_other_sizes_are_refused() -> None:
     small, large = np.zeros((4, 5, 4), np.uint8), np.zeros((5, 5, 4), np.uint8)
     painter = core.Painter((5, 4), (0, 0, 5, 4), (1, 0, 0, 0, -1, 4))
     with pytest.raises(ValueError, match="size"):
-        painter.circle(large, 1, 1, 1, INK, INK, 1)
+        shape(painter, large, np.ones((1, 2)), INK, INK, 1.0, radius=1.0)
     with pytest.raises(ValueError, match="size"):
         core.changed_box(small, large)
     with pytest.raises(ValueError, match="size"):

@@ -1,7 +1,10 @@
 // Tools for pictures: painting shapes, laying layers over one another, rows of PNG and frames of GIF.
+#include "bindings/bound_state.hpp"
 #include "bindings/helpers.hpp"
 #include "pictures/gif.hpp"
+#include "pictures/names.hpp"
 #include "pictures/painter.hpp"
+#include "pictures/trails.hpp"
 
 namespace irsim {
 namespace {
@@ -12,6 +15,9 @@ using MaskArray = nb::ndarray<std::uint8_t, nb::shape<-1, -1>, nb::device::cpu>;
 using PointArray = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using InkArray = nb::ndarray<const std::uint8_t, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
 using WidthArray = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using RangeArray = nb::ndarray<const std::int64_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using BothInksArray = nb::ndarray<const std::uint8_t, nb::shape<-1, 2, 4>, nb::c_contig, nb::device::cpu>;
+using BoxArray = nb::ndarray<const double, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
 using InkTuple = std::array<double, 4>;
 
 /// Pixels that lie side by side in each row.
@@ -82,8 +88,18 @@ Ink ink_of(const InkTuple& color) {
 
 const Vec2* points_of(const PointArray& points) { return reinterpret_cast<const Vec2*>(points.data()); }
 
-LineStyle style_of(double width, const std::string& join, bool round_caps) {
-  return {width, join == "round" ? Join::kRound : join == "bevel" ? Join::kBevel : Join::kMiter, round_caps, {}};
+LineStyle style_of(double width, const std::string& join, bool round_caps, const std::vector<double>& dashes = {}) {
+  if (dashes.size() % 2 != 0 || std::any_of(dashes.begin(), dashes.end(), [](double d) { return !(d > 0.0); }))
+    throw nb::value_error("dashes and gaps must be pairs of positive lengths");
+  return {width, join == "round" ? Join::kRound : join == "bevel" ? Join::kBevel : Join::kMiter, round_caps, dashes};
+}
+
+void check_ranges(const RangeArray& ranges, std::size_t count) {
+  for (std::size_t i = 0; i < ranges.shape(0); ++i) {
+    const std::int64_t begin = ranges(i, 0), end = ranges(i, 1);
+    if (begin < 0 || begin > end || static_cast<std::size_t>(end) > count)
+      throw nb::value_error("ranges must lie within the points");
+  }
 }
 
 /// A painter for pictures of one size, whose clip box lies within them.
@@ -97,6 +113,8 @@ struct BoundPainter {
     return pixels;
   }
 };
+
+TextBox box_at(const double* corners) { return {corners[0], corners[1], corners[2], corners[3]}; }
 
 nb::bytes bytes_of(const std::vector<std::uint8_t>& bytes) {
   return nb::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -116,6 +134,28 @@ nb::object box_or_none(const PixelBox& box) {
   return nb::make_tuple(box.left, box.top, box.right, box.bottom);
 }
 
+nb::object trails(const BoundState& state, const std::vector<int>& rows, const std::vector<double>& offsets,
+                  TrailCut cut) {
+  if (offsets.size() != rows.size()) throw nb::value_error("there must be one offset per row");
+  if (cut.ages.size() < 2) throw nb::value_error("a trail has at least one piece");
+  std::vector<Vec2> points;
+  std::vector<std::int64_t> ranges;
+  const State& s = state.state;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    state.check_row(rows[i]);
+    if (!s.keep_history) throw nb::value_error("this state does not keep a history");
+    const std::vector<double>& states = s.history[rows[i]];
+    const std::size_t columns = 3 + static_cast<std::size_t>(s.extra_rows);
+    const Pose& start = s.initial_pose[rows[i]];
+    add_trail({states.data(), states.size() / columns, columns, {start.x, start.y}, start.theta, offsets[i]}, cut,
+              points, ranges);
+  }
+  std::vector<double> places;
+  for (const Vec2 p : points) places.insert(places.end(), {p.x, p.y});
+  const std::size_t pieces = cut.ages.size() - 1;
+  return nb::make_tuple(own(std::move(places), {points.size(), 2}), own(std::move(ranges), {rows.size(), pieces, 2}));
+}
+
 }  // namespace
 
 void bind_pictures(nb::module_& m) {
@@ -133,22 +173,6 @@ void bind_pictures(nb::module_& m) {
           },
           nb::arg("size"), nb::arg("clip"), nb::arg("view"))
       .def(
-          "circle",
-          [](BoundPainter& self, const PixelArray& pixels, double x, double y, double radius, const InkTuple& fill,
-             const InkTuple& edge, double width) {
-            self.painter.circle(self.own(pixels), {x, y}, radius, ink_of(fill), ink_of(edge), width);
-          },
-          nb::arg("pixels"), nb::arg("x"), nb::arg("y"), nb::arg("radius"), nb::arg("fill"), nb::arg("edge"),
-          nb::arg("width"))
-      .def(
-          "polygon",
-          [](BoundPainter& self, const PixelArray& pixels, const PointArray& points, const InkTuple& fill,
-             const InkTuple& edge, double width, const std::string& join) {
-            self.painter.polygon(self.own(pixels), points_of(points), points.shape(0), ink_of(fill), ink_of(edge),
-                                 style_of(width, join, false));
-          },
-          nb::arg("pixels"), nb::arg("points"), nb::arg("fill"), nb::arg("edge"), nb::arg("width"), nb::arg("join"))
-      .def(
           "glow",
           [](BoundPainter& self, const PixelArray& pixels, const PointArray& points, double x, double y, double reach,
              const InkTuple& fill) {
@@ -156,26 +180,20 @@ void bind_pictures(nb::module_& m) {
           },
           nb::arg("pixels"), nb::arg("points"), nb::arg("x"), nb::arg("y"), nb::arg("reach"), nb::arg("fill"))
       .def(
-          "discs",
-          [](BoundPainter& self, const PixelArray& pixels, const PointArray& points, double radius,
-             const InkTuple& fill, const InkTuple& edge, double width) {
-            self.painter.discs(self.own(pixels), points_of(points), points.shape(0), radius, ink_of(fill), ink_of(edge),
-                               width);
-          },
-          nb::arg("pixels"), nb::arg("points"), nb::arg("radius"), nb::arg("fill"), nb::arg("edge"), nb::arg("width"))
-      .def(
-          "line",
-          [](BoundPainter& self, const PixelArray& pixels, const PointArray& points, const InkTuple& edge, double width,
+          "shapes",
+          [](BoundPainter& self, const PixelArray& pixels, const PointArray& points, const RangeArray& ranges,
+             const WidthArray& radii, const BothInksArray& inks, const WidthArray& widths, bool closed,
              const std::string& join, bool round_caps, const std::vector<double>& dashes) {
-            LineStyle style = style_of(width, join, round_caps);
-            if (dashes.size() % 2 != 0 ||
-                std::any_of(dashes.begin(), dashes.end(), [](double d) { return !(d > 0.0); }))
-              throw nb::value_error("dashes and gaps must be pairs of positive lengths");
-            style.dashes = dashes;
-            self.painter.line(self.own(pixels), points_of(points), points.shape(0), ink_of(edge), style);
+            const std::size_t count = ranges.shape(0);
+            if (radii.shape(0) != count || inks.shape(0) != count || widths.shape(0) != count)
+              throw nb::value_error("there must be one radius, one pair of colors and one width per shape");
+            check_ranges(ranges, points.shape(0));
+            const PictureShapes shapes{count,       points_of(points), ranges.data(), radii.data(),
+                                       inks.data(), widths.data(),     closed};
+            self.painter.shapes(self.own(pixels), shapes, style_of(0.0, join, round_caps, dashes));
           },
-          nb::arg("pixels"), nb::arg("points"), nb::arg("edge"), nb::arg("width"), nb::arg("join"),
-          nb::arg("round_caps"), nb::arg("dashes") = std::vector<double>{})
+          nb::arg("pixels"), nb::arg("points"), nb::arg("ranges"), nb::arg("radii"), nb::arg("inks"), nb::arg("widths"),
+          nb::arg("closed"), nb::arg("join"), nb::arg("round_caps"), nb::arg("dashes") = std::vector<double>{})
       .def(
           "beams",
           [](BoundPainter& self, const PixelArray& pixels, std::pair<double, double> origin, const PointArray& ends,
@@ -229,6 +247,38 @@ void bind_pictures(nb::module_& m) {
         copy_boxes(source, target, boxes_of(boxes, target));
       },
       nb::arg("source"), nb::arg("target"), nb::arg("boxes"));
+  m.def(
+      "trails",
+      [](const BoundState& state, const std::vector<int>& rows, const std::vector<double>& offsets,
+         std::vector<std::int64_t> ages, std::int64_t longest,
+         double least) { return trails(state, rows, offsets, {std::move(ages), longest, least}); },
+      nb::arg("state"), nb::arg("rows"), nb::arg("offsets"), nb::arg("ages"), nb::arg("longest"), nb::arg("least"));
+  m.def(
+      "place_names",
+      [](const nb::ndarray<const double, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>& wishes, double height,
+         const std::array<double, 4>& inside, const BoxArray& taken, const BoxArray& walls, const PointArray& plans,
+         const RangeArray& plan_ranges, const PointArray& trails) {
+        check_ranges(plan_ranges, plans.shape(0));
+        NameSurroundings around;
+        around.inside = box_at(inside.data());
+        around.height = height;
+        for (std::size_t i = 0; i < taken.shape(0); ++i) around.taken.push_back(box_at(taken.data() + 4 * i));
+        for (std::size_t i = 0; i < walls.shape(0); ++i) around.walls.push_back(box_at(walls.data() + 4 * i));
+        for (std::size_t i = 0; i < plan_ranges.shape(0); ++i) {
+          const auto begin = plan_ranges(i, 0), end = plan_ranges(i, 1);
+          spread_points(points_of(plans) + begin, static_cast<std::size_t>(end - begin), around.plans);
+        }
+        around.trails.assign(points_of(trails), points_of(trails) + trails.shape(0));
+        nb::list places;
+        for (std::size_t i = 0; i < wishes.shape(0); ++i) {
+          const double* wish = wishes.data() + 5 * i;
+          const NamePlace place = place_name({{wish[0], wish[1]}, wish[2], wish[3], wish[4]}, around);
+          places.append(nb::make_tuple(place.number, place.box.left, place.box.bottom, place.box.right, place.box.top));
+        }
+        return places;
+      },
+      nb::arg("wishes"), nb::arg("height"), nb::arg("inside"), nb::arg("taken"), nb::arg("walls"), nb::arg("plans"),
+      nb::arg("plan_ranges"), nb::arg("trails"));
   m.def("rgb_rows", &rgb_rows, nb::arg("pixels"));
   m.def(
       "changed_box",

@@ -86,12 +86,6 @@ void Painter::glow(const Pixels& pixels, const Vec2* points, std::size_t count, 
   if (!is_empty(box)) boxes_.push_back(box);
 }
 
-void Painter::discs(const Pixels& pixels, const Vec2* centers, std::size_t count, double radius, Ink fill, Ink edge,
-                    double width) {
-  for (std::size_t i = 0; i < count; ++i) circle(pixels, centers[i], radius, fill, edge, width);
-  boxes_ = merged(boxes_);
-}
-
 void Painter::line(const Pixels& pixels, const Vec2* points, std::size_t count, Ink edge, const LineStyle& style) {
   if (edge.alpha == 0 || !(style.width > 0.0)) return;
   Raster& raster = raster_for(clip_);
@@ -103,6 +97,24 @@ void Painter::line(const Pixels& pixels, const Vec2* points, std::size_t count, 
     add_dashes(raster, corners, style);
   }
   paint(raster, pixels, edge);
+}
+
+void Painter::shapes(const Pixels& pixels, const PictureShapes& shapes, LineStyle style) {
+  for (std::size_t i = 0; i < shapes.count; ++i) {
+    const std::int64_t begin = shapes.ranges[2 * i], end = shapes.ranges[2 * i + 1];
+    const Vec2* points = shapes.points + begin;
+    const std::size_t count = static_cast<std::size_t>(end - begin);
+    const std::uint8_t* ink = shapes.inks + 2 * kChannels * i;
+    const Ink fill{ink[0], ink[1], ink[2], ink[3]}, edge{ink[4], ink[5], ink[6], ink[7]};
+    style.width = shapes.widths[i];
+    if (shapes.radii[i] >= 0.0) {
+      if (count > 0) circle(pixels, points[0], shapes.radii[i], fill, edge, style.width);
+    } else if (shapes.closed) {
+      polygon(pixels, points, count, fill, edge, style);
+    } else {
+      line(pixels, points, count, edge, style);
+    }
+  }
 }
 
 void Painter::beams(const Pixels& pixels, Vec2 origin, const Vec2* ends, std::size_t count, const Ink* inks,

@@ -16,6 +16,18 @@ struct PictureView {
   Vec2 operator()(Vec2 p) const { return {xx * p.x + xy * p.y + x0, yx * p.x + yy * p.y + y0}; }
 };
 
+/// Shapes of one kind in common arrays. Shape i has the points from begins(i) on, up to ends(i); if radii[i] >= 0, it
+/// is the circle of this radius about the first of them, else a polygon if they are closed, else a line.
+struct PictureShapes {
+  std::size_t count = 0;
+  const Vec2* points = nullptr;
+  const std::int64_t* ranges = nullptr;  ///< (count, 2) begin and end
+  const double* radii = nullptr;
+  const std::uint8_t* inks = nullptr;  ///< (count, 2, 4) of fill and edge
+  const double* widths = nullptr;      ///< of edges [px]
+  bool closed = false;
+};
+
 /// Paints shapes in world coordinates; a shape has a fill and a stroke, of which either may be transparent.
 class Painter {
  public:
@@ -28,10 +40,10 @@ class Painter {
   /// Paint a polygon that is bright at `origin`, paler with the distance, and ends softly at the distance `reach`.
   void glow(const Pixels& pixels, const Vec2* points, std::size_t count, Vec2 origin, double reach, Ink fill);
 
-  /// Paint discs of one radius, with outlines `width` pixels wide.
-  void discs(const Pixels& pixels, const Vec2* centers, std::size_t count, double radius, Ink fill, Ink edge,
-             double width);
   void line(const Pixels& pixels, const Vec2* points, std::size_t count, Ink edge, const LineStyle& style);
+
+  /// Paint shapes, one over the other; `style` has the joins, caps and dashes of all of them.
+  void shapes(const Pixels& pixels, const PictureShapes& shapes, LineStyle style);
 
   /// Paint straight lines from `origin` to the `ends`, one over the other.
   void beams(const Pixels& pixels, Vec2 origin, const Vec2* ends, std::size_t count, const Ink* inks,

@@ -1,10 +1,9 @@
-"""The canvas of a frame, and the brush that paints marks straight into its pixels, as Agg draws them."""
+"""The canvas of a frame, with its view of the world, and outlines of marks."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -16,12 +15,11 @@ from numpy.typing import NDArray
 
 from irsim import _core as core
 from irsim.common.arrays import Floats
-from irsim.graphics.figure.dashes import SOLID, outline
 from irsim.graphics.scene.glyphs import GLOW
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Sector, Segments, Spots, Stroke
 from irsim.graphics.scene.style import Color
 
-__all__ = ["Box", "Canvas", "geometry_path", "paint", "rgba", "without_glow"]
+__all__ = ["Box", "Canvas", "geometry_path", "rgba", "without_glow"]
 
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom of a part of a canvas [px], top row first."""
@@ -89,7 +87,6 @@ class Canvas:
 
 
 _UNIT_CIRCLE = Path.unit_circle()
-_TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
 _KNOWN_COLORS = 2048
 _GLOW_RINGS = 12
 """Number of polygons that stand for a glow in vector graphics."""
@@ -111,69 +108,6 @@ def _faded(color: Any, alpha: float) -> tuple[float, float, float, float]:
 
 
 _known = lru_cache(maxsize=_KNOWN_COLORS)(_faded)
-
-
-def paint(
-    canvas: Canvas,
-    target: tuple[NDArray[np.uint8], Any],
-    ax: Any,
-    marks: Sequence[Mark],
-    points_per_metre: float,
-    ends: tuple[str, str],
-) -> None:
-    """Paint marks whose strokes are solid, or have few dashes.
-
-    Args:
-        canvas: The canvas, which tells the view and notes what was painted.
-        target: Pixels to paint into, of the size of the canvas, and the Agg renderer that they belong to.
-        ax: Axes in world coordinates, which cut the marks.
-        marks: The marks.
-        points_per_metre: Scale of the view, for line widths given in metres.
-        ends: Styles of caps and joins of strokes.
-    """
-    pixels, renderer = target
-    painter, per_point = canvas.painter, canvas.px_per_point
-    per_metre = points_per_metre * per_point
-    for mark in marks:
-        stroke, fill, shape = mark.stroke, mark.fill, mark.geometry
-        edge = _TRANSPARENT if stroke.color is None else rgba(stroke.color, mark.alpha)
-        width = stroke.width * (per_metre if stroke.metric else per_point)
-        face = _TRANSPARENT if fill is None else rgba(fill, mark.alpha)
-        if stroke.style not in SOLID and (path := outline(mark)) is not None:
-            if isinstance(shape, Region) and fill is not None:
-                painter.polygon(pixels, shape.rings[0], face, _TRANSPARENT, 0.0, ends[1])
-            pattern = [length * width for length in stroke.style[1]]
-            painter.line(pixels, path, edge, width, ends[1], ends[0] == "round", pattern)
-        elif mark.glow is not None and isinstance(shape, Region):
-            painter.glow(pixels, shape.rings[0], *mark.glow, face)
-        elif isinstance(shape, Segments):
-            for points in shape.points:
-                painter.line(pixels, points, edge, width, ends[1], ends[0] == "round")
-        elif isinstance(shape, Spots):
-            painter.discs(pixels, shape.points, shape.radius, face, edge, width)
-        elif isinstance(shape, Circle):
-            painter.circle(pixels, shape.x, shape.y, shape.radius, face, edge, width)
-        elif isinstance(shape, Region) and len(shape.rings) == 1:
-            painter.polygon(pixels, shape.rings[0], face, edge, width, ends[1])
-        elif isinstance(shape, Line) and fill is None:
-            painter.line(pixels, shape.points, edge, width, ends[1], ends[0] == "round")
-        else:
-            canvas.unknown = True
-            _draw(renderer, ax, mark, face, (edge, width / per_point), ends)
-
-
-def _draw(renderer: Any, ax: Any, mark: Mark, face: Any, stroke: tuple[Any, float], ends: tuple[str, str]) -> None:
-    """Let Agg draw a mark, given its colour of fill, colour and width [points] of stroke."""
-    context = renderer.new_gc()
-    context.set_clip_rectangle(ax.bbox)
-    context.set_capstyle(ends[0])
-    context.set_joinstyle(ends[1])
-    context.set_foreground(stroke[0], isRGBA=True)
-    context.set_linewidth(stroke[1] if mark.stroke.color is not None else 0.0)
-    renderer.draw_path(
-        context, geometry_path(mark.geometry), ax.transData.frozen(), None if mark.fill is None else face
-    )
-    context.restore()
 
 
 def geometry_path(geometry: Geometry) -> Path:

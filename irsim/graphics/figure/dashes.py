@@ -5,28 +5,34 @@ from __future__ import annotations
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.scene import Line, Mark, Region
+from irsim.graphics.scene.scene import Line, Mark, Region, Stroke
 
-__all__ = ["SOLID", "is_paintable", "outline"]
+__all__ = ["SOLID", "outline", "pattern_of"]
 
 SOLID = ("-", "solid")
 MAX_DASHES = 2000
 """A line with more dashes is left to Matplotlib, which cuts it to the view first."""
 
 
-def is_paintable(mark: Mark, points_per_metre: float) -> bool:
-    """Whether a mark is solid, or has few dashes whose lengths its style gives."""
-    stroke = mark.stroke
-    if stroke.style in SOLID:
-        return True
+def pattern_of(stroke: Stroke, points: Floats, points_per_metre: float, lines: int = 1) -> list[float] | None:
+    """Lengths of dashes and gaps [pt] of lines that are painted; None if they have too many, or a named style.
+
+    Args:
+        stroke: The stroke of the lines, which is not solid.
+        points: Their points (K, 2) [m].
+        points_per_metre: Scale of the view.
+        lines: Number of lines.
+    """
     if not isinstance(stroke.style, tuple) or stroke.metric or not stroke.width > 0:
-        return False
-    points, (offset, pattern) = outline(mark), stroke.style
-    if points is None or len(points) < 2 or offset or len(pattern) % 2 or not min(pattern, default=0) > 0:
-        return False
-    steps = np.diff(points, axis=0)
+        return None
+    offset, pattern = stroke.style
+    if len(points) < 2 or offset or len(pattern) % 2 or not min(pattern, default=0) > 0:
+        return None
+    steps = points[1:] - points[:-1]
     length = float(np.hypot(steps[:, 0], steps[:, 1]).sum()) * points_per_metre
-    return length <= MAX_DASHES * sum(pattern) * stroke.width
+    if not length <= MAX_DASHES * lines * sum(pattern) * stroke.width:
+        return None
+    return [part * stroke.width for part in pattern]
 
 
 def outline(mark: Mark) -> Floats | None:

@@ -149,6 +149,9 @@ class SceneFigure:
         groups: dict[tuple[Any, ...], list[Any]] = {key: [] for key in self._marks}
         for mark in scene.marks:
             groups.setdefault(layer_key(mark.part, mark.zorder, mark.stroke.round_caps), []).append(mark)
+        for group in scene.groups:
+            key = layer_key(group.part, group.zorder, group.looks[0][1].round_caps)
+            groups.setdefault(key, []).append(group)
         for key, marks in groups.items():
             if key not in self._marks:
                 self._marks[key] = MarkLayer(self.ax, key)

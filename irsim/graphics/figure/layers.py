@@ -13,10 +13,11 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from irsim.common.arrays import Floats
-from irsim.graphics.figure.canvas import Box, Canvas, geometry_path, paint, rgba, without_glow
-from irsim.graphics.figure.dashes import SOLID, is_paintable
+from irsim.graphics.figure.brush import Work, paint, prepare
+from irsim.graphics.figure.canvas import Box, Canvas, geometry_path, rgba, without_glow
+from irsim.graphics.figure.dashes import SOLID
 from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.scene import Beams, Dots, Mark, Scene
+from irsim.graphics.scene.scene import Beams, Dots, Group, Mark, Scene
 from irsim.graphics.scene.style import Color
 
 __all__ = [
@@ -74,46 +75,55 @@ def layer_key(part: str, zorder: float, round_caps: bool = False) -> tuple[Any, 
 
 
 class MarkArtist(PathCollection):
-    """Shows marks: painted one by one on a pixel canvas if their strokes allow it, as a collection elsewhere.
+    """Shows marks: painted in batches on a pixel canvas if their strokes allow it, as a collection elsewhere.
 
     Attributes:
         before: Called before the marks are drawn; it may bring them up to date.
         fill: Makes the paths of the collection from the marks.
-        marks: The marks.
+        items: The marks, one by one or in groups.
         scale: Points per metre, for line widths given in metres.
         covers: Whether the marks hide what reaches out of the world, in whole pixels.
     """
 
     before: Callable[[], None] | None = None
     fill: Callable[[], None]
-    marks: Sequence[Mark] = ()
+    items: Sequence[Mark | Group] = ()
     scale = 0.0
     covers = False
+    _work: Sequence[Work] = ()
+    _is_plain = True
+    _prepared: Sequence[Mark | Group] | None = None
+
+    @property
+    def marks(self) -> list[Mark]:
+        """The marks, one by one."""
+        return [mark for item in self.items for mark in (item.marks() if isinstance(item, Group) else [item])]
 
     def draw(self, renderer: Any) -> None:
         """Draw the marks."""
         if not self.get_visible():
             return
-        if self.before is not None:
-            self.before()
-        if isinstance(renderer, RendererAgg) and self._is_plain():
-            self._paint(Canvas(self.axes, renderer))
-            return
-        self.fill()
-        super().draw(renderer)
+        if not (isinstance(renderer, RendererAgg) and self.paint_on(Canvas(self.axes, renderer))):
+            if self.before is not None:
+                self.before()
+            self.fill()
+            super().draw(renderer)
 
     def paint_on(self, canvas: Canvas) -> bool:
         """Paint the marks if their strokes allow it; return whether that was done."""
         if self.before is not None:
             self.before()
-        plain = self._is_plain()
-        if plain:
-            self._paint(canvas)
-        return plain
+        if self._prepared is not self.items:
+            self._work, self._is_plain = prepare(self.items, self.scale, self._work)
+            self._prepared = self.items
+        if self._is_plain and self._work:
+            ends = str(self.get_capstyle()), str(self.get_joinstyle())
+            paint(canvas, (canvas.pixels, canvas.renderer), self.axes, self._work, ends)
+        return self._is_plain
 
     def is_reached(self, canvas: Canvas, boxes: Sequence[Box]) -> bool:
         """Whether one of the boxes of pixels reaches below the marks."""
-        if not boxes or not self.marks:
+        if not boxes or not self.items:
             return False
         low, high = np.array([bounds(mark.geometry) for mark in self.marks]).reshape(-1, 2, 2).transpose(1, 0, 2)
         (left, bottom), (right, top) = canvas.to_pixels(low).T, canvas.to_pixels(high).T
@@ -122,14 +132,6 @@ class MarkArtist(PathCollection):
         return bool(
             ((x1 > left + _NEAR_PX) & (x0 < right - _NEAR_PX) & (y1 > bottom + _NEAR_PX) & (y0 < top - _NEAR_PX)).any()
         )
-
-    def _is_plain(self) -> bool:
-        return all(mark.stroke.style in SOLID or is_paintable(mark, self.scale) for mark in self.marks)
-
-    def _paint(self, canvas: Canvas) -> None:
-        if self.marks:
-            ends = str(self.get_capstyle()), str(self.get_joinstyle())
-            paint(canvas, (canvas.pixels, canvas.renderer), self.axes, self.marks, self.scale, ends)
 
 
 class MarkLayer:
@@ -153,21 +155,20 @@ class MarkLayer:
         self._filled: list[Mark] = []
         self._paths: list[Path] = []
 
-    def show(self, marks: Sequence[Mark], points_per_metre: float) -> None:
+    def show(self, items: Sequence[Mark | Group], points_per_metre: float) -> None:
         """Show exactly these marks.
 
         Args:
-            marks: The marks; the same Python objects as last time count as unchanged.
+            items: The marks and groups; the same Python objects as last time count as unchanged.
             points_per_metre: Scale of the view, for line widths given in metres.
         """
-        old, artist = self.artist.marks, self.artist
-        rescaled = points_per_metre != artist.scale and any(mark.stroke.metric for mark in marks)
-        if _same_at_start(old, marks) == len(old) == len(marks) and not rescaled:
+        old, artist = self.artist.items, self.artist
+        if _same_at_start(old, items) == len(old) == len(items) and points_per_metre == artist.scale:
             self.resting_scenes += 1
             return
         self.version += 1
         self.resting_scenes = 0
-        artist.marks, artist.scale, artist.stale = list(marks), points_per_metre, True
+        artist.items, artist.scale, artist.stale = list(items), points_per_metre, True
 
     def _fill(self) -> None:
         """Make paths, colours and lines of the collection."""
@@ -205,7 +206,7 @@ def _near_view(path: Path, axes: Any) -> Path:
     return cut
 
 
-def _same_at_start(old: Sequence[Mark], new: Sequence[Mark]) -> int:
+def _same_at_start(old: Sequence[Mark | Group], new: Sequence[Mark | Group]) -> int:
     """Return the number of marks at the start of two lists that are the same Python objects."""
     pairs = enumerate(zip(old, new, strict=False))
     return next((i for i, (a, b) in pairs if a is not b), min(len(old), len(new)))
@@ -311,7 +312,7 @@ class Spokes(Collection):
 
 def opaque_colors(scene: Scene) -> list[tuple[int, int, int]]:
     """Return the colours (0..255) that a reduced palette must keep: white, black, opaque marks, some labels."""
-    colors = [rgba(mark.fill)[:3] for mark in scene.marks if mark.fill is not None and mark.alpha == 1]
+    colors = [rgba(mark.fill)[:3] for mark in scene.all_marks() if mark.fill is not None and mark.alpha == 1]
     colors += [rgba(label.color)[:3] for label in scene.labels if label.part in ("field", "plan")]
     levels = [(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), *dict.fromkeys(colors)]
     return [(round(r * 255), round(g * 255), round(b * 255)) for r, g, b in levels]
@@ -322,7 +323,7 @@ def hint_colors(scene: Scene, tokens: Iterable[str]) -> list[tuple[int, int, int
 
     These are the colours of the table that the picture has, and the other opaque colours of its bodies and lines.
     """
-    marks = [mark for mark in scene.marks if mark.alpha == 1]
+    marks = [mark for mark in scene.all_marks() if mark.alpha == 1]
     used = [mark.fill for mark in marks] + [mark.stroke.color for mark in marks if mark.part != "trajectory"]
     used += [label.color for label in scene.labels]
     levels = dict.fromkeys(rgba(color)[:3] for color in used if color is not None)

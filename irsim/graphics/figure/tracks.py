@@ -14,7 +14,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from irsim.graphics.figure.canvas import Box, Canvas, paint, rgba
+from irsim.graphics.figure.brush import paint, prepare
+from irsim.graphics.figure.canvas import Box, Canvas, rgba
 from irsim.graphics.figure.layers import PARTS, MarkLayer
 from irsim.graphics.scene.scene import Mark
 from irsim.graphics.scene.tracks import GrowingLine, GrowingTrail, Track
@@ -196,7 +197,8 @@ class TrailLayer:
         if new:
             canvas.painter.take_boxes()
             canvas.unknown = False
-            paint(canvas, (self._image, self._renderer), self._ax, new, self._scale, ("butt", "miter"))
+            work, _ = prepare(new, self._scale)
+            paint(canvas, (self._image, self._renderer), self._ax, work, ("butt", "miter"))
             painted = [canvas.clip] if canvas.unknown else canvas.painter.take_boxes()
             self._box = around([*([] if self._box is None else [self._box]), *painted])
             boxes += painted

@@ -27,8 +27,10 @@ __all__ = [
     "Fog",
     "Geometry",
     "GridImage",
+    "Group",
     "Label",
     "Line",
+    "Look",
     "Mark",
     "Picture",
     "Region",
@@ -138,6 +140,50 @@ class Mark:
     alpha: float
     zorder: float
     glow: tuple[float, float, float] | None = None
+
+
+Look = tuple[Color | None, Stroke, float]
+"""Fill, outline and opacity of a mark."""
+NO_CIRCLE = -1.0
+"""Stands for the radius of a shape that is no circle."""
+
+
+@dataclass(slots=True, eq=False)
+class Group:
+    """Marks of one part and layer whose shapes lie in common arrays; later ones cover earlier ones.
+
+    Attributes:
+        part, zorder: The part that they show, and their layer.
+        closed: Whether shapes that are no circles are areas; else they are lines.
+        objects: The object of each mark.
+        points: (K, 2) points of all shapes; a circle has one, its centre.
+        ranges: (N, 2) first and end of the points of each shape.
+        radii: (N,) radii of circles; `NO_CIRCLE` for other shapes.
+        looks: The look of each mark. If one has dashes, all have the same dashes and width.
+    """
+
+    part: str
+    zorder: float
+    closed: bool
+    objects: Sequence[int]
+    points: Floats
+    ranges: NDArray[np.int64]
+    radii: Floats
+    looks: list[Look]
+
+    def marks(self) -> list[Mark]:
+        """The marks, one by one."""
+        shapes = zip(self.objects, self.ranges.tolist(), self.radii.tolist(), self.looks, strict=True)
+        return [
+            Mark(number, self.part, self._shape(self.points[begin:end], radius), fill, stroke, alpha, self.zorder)
+            for number, (begin, end), radius, (fill, stroke, alpha) in shapes
+        ]
+
+    def _shape(self, points: Floats, radius: float) -> Geometry:
+        if radius >= 0.0:
+            x, y = points[0].tolist()
+            return Circle(x, y, radius)
+        return Region([points]) if self.closed else Line(points)
 
 
 @dataclass(slots=True, eq=False)
@@ -253,6 +299,7 @@ class Scene:
         extent: The world: x from, x to, y from, y to.
         center: Centre of the view; None shows the whole world.
         fog: The fog, or None in a world without fog.
+        groups: More marks, above those of the same part and layer.
     """
 
     time: float
@@ -265,6 +312,11 @@ class Scene:
     pictures: list[Picture]
     fog: Fog | None = None
     grids: list[GridImage] = field(default_factory=list)
+    groups: list[Group] = field(default_factory=list)
+
+    def all_marks(self) -> list[Mark]:
+        """All marks one by one, with those of groups."""
+        return [*self.marks, *(mark for group in self.groups for mark in group.marks())]
 
     def look_at(self, extent: tuple[float, float, float, float]) -> None:
         """Show this part of the world instead: x from, x to, y from, y to."""
@@ -272,11 +324,13 @@ class Scene:
 
     def of(self, object_id: int, part: str) -> Iterator[Mark]:
         """Iterate over the marks that show a part of one object."""
-        return (mark for mark in self.marks if mark.object == object_id and mark.part == part)
+        return (mark for mark in self.all_marks() if mark.object == object_id and mark.part == part)
 
     def as_dict(self) -> dict[str, Any]:
         """Convert the scene to lists, dictionaries, numbers and strings; each geometry has a key ``kind``."""
         plain: dict[str, Any] = _plain(self)
+        plain["marks"] += _plain([mark for group in self.groups for mark in group.marks()])
+        del plain["groups"]
         return plain
 
 

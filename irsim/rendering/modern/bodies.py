@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import Pose, place
 from irsim.graphics.scene.glyphs import (
     ARRIVED_SHARE,
@@ -18,19 +19,21 @@ from irsim.graphics.scene.glyphs import (
     SMALL_PERSON_U,
     long_dart,
 )
-from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Stroke
-from irsim.graphics.scene.theme import Theme, mix
+from irsim.graphics.scene.groups import GroupBuilder, placed_areas
+from irsim.graphics.scene.scene import Circle, Geometry, Group, Line, Look, Mark, Region, Stroke
+from irsim.graphics.scene.theme import Shades, Theme, mix
 from irsim.rendering.modern.frame import stroke
 from irsim.rendering.modern.layout import Layout
 from irsim.rendering.modern.things import Thing
 
-__all__ = ["STILL_Z", "dart", "moving_marks", "person_marks", "robot_marks", "still_marks"]
+__all__ = ["STILL_Z", "dart", "moving_marks", "person_groups", "robot_groups", "still_marks"]
 
 STILL_Z = 1.2
 _WALL_Z, _PERSON_Z, _ROBOT_Z = 1.5, 4.0, 4.3
 _POINTS = 32
 _WHEEL = (0.22, 0.09)
 """Length and width of a wheel, as shares of the length of the body."""
+SOLID = ("-", "solid")
 MIN_WHEELED = 24.0
 """Least length of a body with wheels [u]."""
 
@@ -60,54 +63,90 @@ def moving_marks(thing: Thing, theme: Theme) -> list[Mark]:
     return [Mark(thing.number, "body", body.geometry, thing.shades.fill, rim, body.alpha, _PERSON_Z)]
 
 
-def person_marks(thing: Thing, layout: Layout, theme: Theme) -> list[Mark]:
-    """Head and shoulders as seen from above; the head is in front."""
-    body, r = thing.mark, thing.glyph_radius
-    if body is None:
-        return []
-    number, fill, alpha = thing.number, thing.shades.fill, body.alpha
-    pose: Pose = (*thing.drawn_at[:2], thing.course)
-    small = r * layout.scale < SMALL_PERSON_U
-    glyph = PEOPLE["small" if small else "large"]
-    marks = list[Mark]()
-    if not small:
-        disc = Circle(*thing.drawn_at[:2], r)
-        marks.append(Mark(number, "halo", disc, fill, Stroke(None), FOOTPRINT["fill"] * alpha, _PERSON_Z))
-        rim = stroke(fill, EDGES["person"])
-        marks.append(Mark(number, "halo", disc, None, rim, FOOTPRINT["rim"] * alpha, _PERSON_Z))
-    fill = mix(fill, theme.person_head, glyph.own)
-    shoulders = place(_ellipse(-glyph.behind * r, glyph.along * r, glyph.across * r), pose)
-    middle = place(Circle(glyph.ahead * r, 0.0, glyph.head * r), pose)
+def person_groups(people: Sequence[Thing], layout: Layout, theme: Theme) -> list[Group]:
+    """Heads and shoulders as seen from above; the head is in front."""
+    discs, rims = GroupBuilder("halo", _PERSON_Z), GroupBuilder("halo", _PERSON_Z)
+    heads, shoulders, poses, looks = GroupBuilder("head", _PERSON_Z), list[Floats](), list[Pose](), list[Look]()
+    shown = [thing for thing in people if thing.mark is not None]
+    for thing in shown:
+        number, (x, y, _), r = thing.number, thing.drawn_at, thing.glyph_radius
+        size = "small" if r * layout.scale < SMALL_PERSON_U else "large"
+        glyph = PEOPLE[size]
+        disc, rim, body, head = _person_looks(thing.shades, theme, size, thing.mark.alpha if thing.mark else 1.0)
+        if size == "large":
+            discs.circle(number, x, y, r, disc)
+            rims.circle(number, x, y, r, rim)
+        shoulders.append(_ellipse(-glyph.behind * r, glyph.along * r, glyph.across * r))
+        poses.append((x, y, thing.course))
+        looks.append(body)
+        ahead = glyph.ahead * r
+        heads.circle(
+            number, x + ahead * math.cos(thing.course), y + ahead * math.sin(thing.course), glyph.head * r, head
+        )
+    bodies = placed_areas("body", _PERSON_Z, [thing.number for thing in shown], shoulders, poses, looks)
+    return [*discs.groups(), *rims.groups(), *bodies, *heads.groups()]
+
+
+@lru_cache(maxsize=512)
+def _person_looks(shades: Shades, theme: Theme, size: str, alpha: float) -> tuple[Look, Look, Look, Look]:
+    """Looks of the footprint, its rim, the shoulders and the head."""
+    fill, glyph = shades.fill, PEOPLE[size]
     edge, rim = (stroke(theme.paper, width) for width in glyph.rims)
-    marks.append(Mark(number, "body", shoulders, fill, edge, alpha, _PERSON_Z))
-    marks.append(Mark(number, "head", middle, theme.person_head, rim, alpha, _PERSON_Z))
-    return marks
+    return (
+        (fill, Stroke(None), FOOTPRINT["fill"] * alpha),
+        (None, stroke(fill, EDGES["person"]), FOOTPRINT["rim"] * alpha),
+        (mix(fill, theme.person_head, glyph.own), edge, alpha),
+        (theme.person_head, rim, alpha),
+    )
 
 
-def robot_marks(thing: Thing, layout: Layout, theme: Theme) -> list[Mark]:
-    """A robot with its true footprint, or a disc that is large enough to be seen, and a dart in it."""
-    body, number, shades = thing.mark, thing.number, thing.shades
-    arrived = thing.state == "arrived"
+def robot_groups(robots: Sequence[Thing], layout: Layout, theme: Theme) -> tuple[list[Group], list[Mark]]:
+    """Robots with their true footprint, or a disc that is large enough to be seen, and a dart in it."""
+    halos, bodies, marks = GroupBuilder("halo", _ROBOT_Z - 0.02), GroupBuilder("body", _ROBOT_Z), list[Mark]()
+    darts, poses, looks, numbers = list[Floats](), list[Pose](), list[Look](), list[int]()
+    for thing in robots:
+        if thing.mark is None:
+            continue
+        own, shape, number, r = thing.view.record.plot, thing.mark.geometry, thing.number, thing.glyph_radius
+        disc = thing.is_round or r > thing.body.radius or isinstance(shape, Line)
+        width = float(own.obj_linewidth) if "obj_linewidth" in own.model_fields_set else EDGES["robot"]
+        halo, body, inner = _robot_looks(
+            thing.shades, theme, thing.state == "arrived", disc, (width, own.obj_linestyle), thing.mark.alpha
+        )
+        x, y, _ = thing.drawn_at
+        if disc and own.obj_linestyle in SOLID:
+            halos.circle(number, x, y, r, halo)
+            bodies.circle(number, x, y, r, body)
+        elif isinstance(shape, Region) and len(shape.rings) == 1 and own.obj_linestyle in SOLID:
+            halos.area(number, shape.rings[0], halo)
+            bodies.area(number, shape.rings[0], body)
+        else:
+            shape = Circle(x, y, r) if disc else shape
+            marks.append(Mark(number, "halo", shape, *halo, _ROBOT_Z - 0.02))
+            marks.append(Mark(number, "body", shape, *body, _ROBOT_Z))
+        marks += [] if disc else _wheels(thing, layout, theme, thing.mark.alpha)
+        if thing.wants("show_arrow"):
+            long = None if disc else thing.body.length / 2
+            darts.append(_dart(r if disc else thing.half_width, long, (0.0, 0.0) if disc else thing.body.middle))
+            poses.append((x, y, thing.course))
+            looks.append(inner)
+            numbers.append(number)
+    signs = placed_areas("dart", _ROBOT_Z + 0.01, numbers, darts, poses, looks)
+    return [*halos.groups(), *bodies.groups(), *signs], marks
+
+
+@lru_cache(maxsize=512)
+def _robot_looks(
+    shades: Shades, theme: Theme, arrived: bool, disc: bool, edge: tuple[float, str], alpha: float
+) -> tuple[Look, Look, Look]:
+    """Looks of the halo, the body and the dart."""
     fill = mix(shades.fill, theme.paper, ARRIVED_SHARE) if arrived else shades.fill
-    inner = shades.edge if arrived else shades.dart
-    turned: Pose = (*thing.drawn_at[:2], thing.course)
-    if body is None:
-        return []
-    own, shape = thing.view.record.plot, body.geometry
-    disc = thing.is_round or thing.glyph_radius > thing.body.radius or isinstance(shape, Line)
-    if disc:
-        shape = Circle(*thing.drawn_at[:2], thing.glyph_radius)
     halo = 2 * (EDGES["round_halo"] if disc else EDGES["other_halo"]) + EDGES["robot"]
-    width = float(own.obj_linewidth) if "obj_linewidth" in own.model_fields_set else EDGES["robot"]
-    marks = [
-        Mark(number, "halo", shape, None, stroke(theme.paper, halo), body.alpha, _ROBOT_Z - 0.02),
-        Mark(number, "body", shape, fill, stroke(shades.edge, width, own.obj_linestyle), body.alpha, _ROBOT_Z),
-    ]
-    marks += [] if disc else _wheels(thing, layout, theme, body.alpha)
-    if thing.wants("show_arrow"):
-        sign = dart(thing.glyph_radius) if disc else dart(thing.half_width, thing.body.length / 2, thing.body.middle)
-        marks.append(Mark(number, "dart", place(sign, turned), inner, Stroke(None), body.alpha, _ROBOT_Z + 0.01))
-    return marks
+    return (
+        (None, stroke(theme.paper, halo), alpha),
+        (fill, stroke(shades.edge, *edge), alpha),
+        (shades.edge if arrived else shades.dart, Stroke(None), alpha),
+    )
 
 
 def dart(r: float, half_length: float | None = None, middle: tuple[float, float] = (0.0, 0.0)) -> Region:
@@ -118,8 +157,14 @@ def dart(r: float, half_length: float | None = None, middle: tuple[float, float]
         half_length: Half the length of a long body [m].
         middle: Middle of the body [m].
     """
+    return Region([_dart(r, half_length, middle)])
+
+
+@lru_cache(maxsize=512)
+def _dart(r: float, half_length: float | None, middle: tuple[float, float]) -> Floats:
     corners = [(x * r, y * r) for x, y in DART] if half_length is None else long_dart(r, half_length)
-    return Region([np.array(corners) + middle])
+    points: Floats = np.array(corners) + middle
+    return points
 
 
 def _wheels(thing: Thing, layout: Layout, theme: Theme, alpha: float) -> list[Mark]:
@@ -141,12 +186,7 @@ def _wheels(thing: Thing, layout: Layout, theme: Theme, alpha: float) -> list[Ma
     return marks
 
 
-@lru_cache(maxsize=256)
-def _ellipse(x: float, along: float, across: float) -> Region:
+@lru_cache(maxsize=512)
+def _ellipse(x: float, along: float, across: float) -> Floats:
     angles = np.linspace(0, 2 * math.pi, _POINTS, endpoint=False)
-    return Region([np.stack([x + along * np.cos(angles), across * np.sin(angles)], axis=1)])
-
-
-def kinds(things: Sequence[Thing], kind: str) -> list[Thing]:
-    """The objects of one kind."""
-    return [thing for thing in things if thing.kind == kind]
+    return np.stack([x + along * np.cos(angles), across * np.sin(angles)], axis=1)

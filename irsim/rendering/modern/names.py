@@ -2,32 +2,31 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
+from numpy.typing import NDArray
 
+from irsim import _core as core
 from irsim.common.arrays import Floats
 from irsim.graphics.figure.measuring import TextSizes
 from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.glyphs import NAME
-from irsim.graphics.scene.scene import Bounds, Label, Line, Mark
+from irsim.graphics.scene.glyphs import CROWD, NAME
+from irsim.graphics.scene.groups import boxes_of
+from irsim.graphics.scene.scene import Bounds, Circle, Group, Label, Line, Mark
 from irsim.graphics.scene.theme import Theme
-from irsim.rendering.modern.frame import label, stroke
+from irsim.rendering.modern.frame import FRAME, label, stroke
 from irsim.rendering.modern.layout import Layout
+from irsim.rendering.modern.things import Crowd, Thing
+from irsim.simulation.events import Event
 
-__all__ = ["Wish", "place_names"]
+__all__ = ["Wish", "place_names", "wishes_of"]
 
 _NAME_Z, _LEADER_Z = 7.0, 6.5
-_GAPS = (NAME["gap"], 14.0, 26.0)
-"""Distances of a name from its thing [u]; the farther ones have a line to it."""
-_GAP_COST = (0.0, 0.3, 0.6)
-_WALL_COST, _PLAN_COST, _TRAIL_COST, _ORDER_COST = 0.15, 0.12, 0.06, 0.01
-_LINE_COSTS = (("plan", _PLAN_COST), ("trajectory", _TRAIL_COST))
-_PLACES = 8
-"""Number of places around a thing, at each distance."""
-_PLACE_COSTS = tuple(cost + _ORDER_COST * order for cost in _GAP_COST for order in range(_PLACES))
+PLACES_AROUND = 8
+"""Number of places around a thing, at each of three distances; a line leads to the farther ones."""
 _LEADER = 0.9
 _ASCENT, _DESCENT = 0.76, 0.22
 """Height of a text above and below its line, as shares of its size."""
@@ -36,8 +35,6 @@ _MOVING_Z = 4.0
 """Bodies from this layer on are robots, people and other things that move."""
 _LEAST_LINE_Z = 2.3
 """Lines of lower layers, which are trails of people, may be under names."""
-_SPREAD = 6.0
-"""Distance of the points of plans that names avoid [u]."""
 
 
 @dataclass(frozen=True)
@@ -62,9 +59,44 @@ class Wish:
     leads: bool = True
 
 
+def wishes_of(things: Sequence[Thing], own: Sequence[Event], crowd: Crowd, layout: Layout, theme: Theme) -> list[Wish]:
+    """Names and times of contacts, the most important first."""
+    star = layout.metres(layout.sizes.star)
+    named = [thing for thing in things if _has_name(thing, crowd)]
+    first = [thing.picked or thing.state == "collided" for thing in named]
+    wishes = [_name_wish(thing) for thing in compress(named, first)]
+    if crowd.level < 2 and len(own) <= CROWD["timed"]:
+        for number, event in enumerate(own):
+            place, text = (float(event.x), float(event.y)), f"{event.time:.1f} s"
+            wishes.append(Wish(FRAME - number, "moment", text, theme.danger, place, (star, star), False))
+    return wishes + [_name_wish(thing) for thing, early in zip(named, first, strict=True) if not early]
+
+
+def _has_name(thing: Thing, crowd: Crowd) -> bool:
+    if not thing.shown or not thing.wants("show_text", thing.kind == "robot"):
+        return False
+    if thing.kind != "robot":
+        return "show_text" in thing.view.record.plot.model_fields_set and thing.view.shape != "walls"
+    chosen = thing.picked or (thing.state == "collided" and crowd.level < 2)
+    return crowd.level == 0 or chosen
+
+
+def _name_wish(thing: Thing) -> Wish:
+    view, drawing = thing.view, thing.view.drawing
+    unnamed = view.name == f"{view.role}_{view.id}"
+    text = (view.name if unnamed else drawing.label) if drawing.text is None else str(drawing.text)
+    shape = Circle(*thing.drawn_at[:2], thing.body.radius) if thing.mark is None else thing.mark.geometry
+    left, bottom, right, top = bounds(shape)
+    reach = max((right - left) / 2, thing.glyph_radius), max((top - bottom) / 2, thing.glyph_radius)
+    if not thing.is_round and thing.glyph_radius <= thing.body.radius:
+        reach = (right - left) / 2, (top - bottom) / 2
+    return Wish(thing.number, "name", text, thing.shades.name, ((left + right) / 2, (bottom + top) / 2), reach)
+
+
 def place_names(
     wishes: Sequence[Wish],
     marks: Sequence[Mark],
+    groups: Sequence[Group],
     fixed: Sequence[Label],
     layout: Layout,
     theme: Theme,
@@ -76,6 +108,7 @@ def place_names(
     Args:
         wishes: The texts.
         marks: The marks of the picture.
+        groups: More of them.
         fixed: Texts that have their place.
         layout: The layout.
         theme: The colours.
@@ -93,73 +126,42 @@ def place_names(
         if mark.part in _TAKEN or mark.part == "body":
             box_before = before.get(mark)
             known[mark] = _box(mark, layout) if box_before is None else box_before
-    blocks = [box for mark, box in known.items() if mark.part in _TAKEN or _is_moving(mark)]
-    taken = blocks + [_text_box(one, layout, sizes) for one in fixed]
-    walls = [box for mark, box in known.items() if mark.part == "body" and not _is_moving(mark)]
-    lines = [(cost, _points(marks, part, layout)) for part, cost in _LINE_COSTS]
+    taken = [box for mark, box in known.items() if mark.part in _TAKEN or mark.zorder >= _MOVING_Z]
+    taken += [_text_box(one, layout, sizes) for one in fixed]
+    walls = [box for mark, box in known.items() if mark.part == "body" and mark.zorder < _MOVING_Z]
+    moving = [boxes_of(group) for group in groups if group.part in _TAKEN or group.part == "body"]
+    lines = {part: _lines(marks, groups, part, layout) for part in ("plan", "trajectory")}
     x0, x1, y0, y1 = layout.world
-    (left, bottom), (right, top) = layout.places(np.array([(x0, y0), (x1, y1)])).tolist()
-    inside = left + 1, bottom + 1, right - 1, top - 1
-    leaders, labels, dropped = list[Mark](), list[Label](), 0
+    (left, bottom), (right, top) = layout.place(x0, y0), layout.place(x1, y1)
     size = layout.sizes.name
-    for wish in wishes:
-        best = _cheapest(
-            _places(wish, layout, sizes.width(wish.text, size, bold=True), size), inside, taken, walls, lines
+    scale, heights = layout.scale, (_ASCENT + _DESCENT) * size
+    needed = [
+        (
+            *layout.place(*wish.at), wish.reach[0] * scale, wish.reach[1] * scale,
+            sizes.width(wish.text, size, bold=True),
         )
-        if best is None:
-            dropped += 1
+        for wish in wishes
+    ]  # fmt: skip
+    found = core.place_names(
+        np.array(needed, dtype=np.float64),
+        heights,
+        (left + 1, bottom + 1, right - 1, top - 1),
+        np.concatenate([np.array(taken).reshape(-1, 4), *(_in_picture(boxes, layout) for boxes in moving)]),
+        np.array(walls).reshape(-1, 4),
+        *lines["plan"],
+        lines["trajectory"][0],
+    )
+    leaders, labels, halo = list[Mark](), list[Label](), (theme.paper, NAME["halo"])
+    for wish, (number, *box) in zip(wishes, found, strict=True):
+        if number < 0:
             continue
-        chosen, box = best
-        taken.append(box)
         place = layout.at(box[0], box[1] + _DESCENT * size)
-        halo = (theme.paper, NAME["halo"])
         labels.append(
             label(wish.number, wish.part, place, wish.text, wish.color, size, zorder=_NAME_Z, bold=True, halo=halo)
         )
-        if wish.leads and chosen >= _PLACES:
+        if wish.leads and number >= PLACES_AROUND:
             leaders.append(_leader(wish, np.array(box), layout))
-    return leaders, labels, dropped
-
-
-def _cheapest(
-    places: Iterable[Bounds],
-    inside: Bounds,
-    taken: Sequence[Bounds],
-    walls: Sequence[Bounds],
-    lines: Sequence[tuple[float, Floats]],
-) -> tuple[int, Bounds] | None:
-    """Number and box of the free place of least cost; a place that cannot be the cheapest is not looked at."""
-    best: tuple[int, Bounds] | None = None
-    least = math.inf, math.inf
-    for number, (box, cost) in enumerate(zip(places, _PLACE_COSTS, strict=True)):
-        if cost >= least[0]:
-            break
-        a, b, c, d = box
-        if a < inside[0] or b < inside[1] or c > inside[2] or d > inside[3] or _meets(box, taken):
-            continue
-        cost += _WALL_COST * _meets(box, walls)
-        whole = cost
-        for price, points in lines if cost <= least[0] else ():
-            whole += price * _holds(box, points)
-        if (whole, cost) < least:
-            best, least = (number, box), (whole, cost)
-    return best
-
-
-def _places(wish: Wish, layout: Layout, width: float, size: float) -> Iterator[Bounds]:
-    """3 * 8 boxes around a thing, the nearest first: above, below, right, left, then the corners [u]."""
-    x, y = layout.place(*wish.at)
-    across, up = (length * layout.scale for length in wish.reach)
-    height = (_ASCENT + _DESCENT) * size
-    for gap in _GAPS:
-        over, under = y + up + gap, y - up - gap - height
-        right, left = x + across + gap, x - across - gap - width
-        middle, half = x - width / 2, y - height / 2
-        slant = 0.75
-        corners = [(middle, over), (middle, under), (right, half), (left, half)]
-        for side in (x + slant * across + gap * slant, x - slant * across - gap * slant - width):
-            corners += [(side, y + slant * (up + gap)), (side, y - slant * (up + gap) - height)]
-        yield from ((a, b, a + width, b + height) for a, b in corners)
+    return leaders, labels, len(wishes) - len(labels)
 
 
 def _leader(wish: Wish, box: Floats, layout: Layout) -> Mark:
@@ -173,10 +175,6 @@ def _leader(wish: Wish, box: Floats, layout: Layout) -> Mark:
     return Mark(wish.number, "sign", Line(points), None, stroke(wish.color, _LEADER), 1.0, _LEADER_Z)
 
 
-def _is_moving(mark: Mark) -> bool:
-    return mark.part == "body" and mark.zorder >= _MOVING_Z
-
-
 def _box(mark: Mark, layout: Layout) -> Bounds:
     left, bottom, right, top = bounds(mark.geometry)
     x, y, scale = layout.world[0], layout.world[2], layout.scale
@@ -188,6 +186,11 @@ def _box(mark: Mark, layout: Layout) -> Bounds:
     )
 
 
+def _in_picture(boxes: Floats, layout: Layout) -> Floats:
+    """Convert boxes (N, 4) of the world to the picture [u]."""
+    return layout.places(boxes.reshape(-1, 2)).reshape(-1, 4)
+
+
 def _text_box(one: Label, layout: Layout, sizes: TextSizes) -> tuple[float, float, float, float]:
     size = one.size * 96 / 72
     x, y = layout.place(one.x, one.y)
@@ -195,33 +198,21 @@ def _text_box(one: Label, layout: Layout, sizes: TextSizes) -> tuple[float, floa
     return x, y - _DESCENT * size, x + width, y + _ASCENT * size
 
 
-def _points(marks: Sequence[Mark], part: str, layout: Layout) -> Floats:
-    """Points along lines, so close together that a text hardly lies between two of them [u]."""
-    lines = [
-        m.geometry.points for m in marks if m.part == part and m.zorder >= _LEAST_LINE_Z and type(m.geometry) is Line
-    ]
-    if not lines or part != "plan":
-        return layout.places(np.concatenate([np.empty((0, 2)), *lines]))
-    straight = layout.places(np.array([points for points in lines if len(points) == 2]).reshape(-1, 2))
-    starts, ways = straight[::2], straight[1::2] - straight[::2]
-    pieces = (np.hypot(ways[:, 0], ways[:, 1]) / _SPREAD).astype(int) + 1
-    whose = np.repeat(np.arange(len(pieces)), pieces + 1)
-    shares = (np.arange(len(whose)) - (np.cumsum(pieces + 1) - pieces - 1)[whose]) / pieces[whose]
-    places = [starts[whose] + shares[:, None] * ways[whose]]
-    for points in (layout.places(points) for points in lines if len(points) != 2):
-        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])  # corners are far apart
-        at = np.linspace(0.0, along[-1], 2 + int(along[-1] / _SPREAD))
-        places.append(np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1))
-    return np.concatenate(places)
-
-
-def _holds(box: Bounds, points: Floats) -> bool:
-    """Whether a box contains one of the points."""
-    inside = (points > box[:2]) & (points < box[2:])
-    return bool((inside[:, 0] & inside[:, 1]).any())
-
-
-def _meets(box: Bounds, others: Sequence[Bounds]) -> bool:
-    """Whether a box overlaps another one."""
-    left, bottom, right, top = box
-    return any(right > a and left < c and top > b and bottom < d for a, b, c, d in others)
+def _lines(
+    marks: Sequence[Mark], groups: Sequence[Group], part: str, layout: Layout
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Points of lines [u], and the first and the end of the points of each."""
+    points, ranges, count = list[Floats](), list[NDArray[np.int64]](), 0
+    for mark in marks:
+        if mark.part == part and mark.zorder >= _LEAST_LINE_Z and isinstance(mark.geometry, Line):
+            points.append(mark.geometry.points)
+            ranges.append(np.array([(0, len(points[-1]))]) + count)
+            count += len(points[-1])
+    for group in groups:
+        if group.part == part and group.zorder >= _LEAST_LINE_Z:
+            points.append(group.points)
+            ranges.append(group.ranges + count)
+            count += len(group.points)
+    if not points:
+        return np.empty((0, 2)), np.empty((0, 2), dtype=np.int64)
+    return layout.places(np.concatenate(points)), np.concatenate(ranges)

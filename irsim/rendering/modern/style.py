@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import compress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.common.arrays import Floats
 from irsim.graphics.figure.measuring import TextSizes
-from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.glyphs import CROWD
-from irsim.graphics.scene.scene import Bounds, Circle, GridImage, Label, Mark, Scene, Stroke
+from irsim.graphics.scene.groups import kept
+from irsim.graphics.scene.scene import Bounds, GridImage, Group, Label, Mark, Scene, Stroke
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern import bodies, frame, ground, heading, names, sensing, signs, ways
 from irsim.rendering.modern.layout import Layout
@@ -94,7 +93,8 @@ class ModernStyle:
         self._parts: dict[tuple[Any, ...], Parts] = {}
         self._head: tuple[Any, Parts] | None = None
         self._boxes: dict[Mark, Bounds] = {}
-        self._goals: dict[int, tuple[Any, list[Mark]]] = {}
+        self._marks: dict[tuple[str, int], tuple[Any, list[Mark]]] = {}
+        self._groups: dict[tuple[Any, ...], Group] = {}
         self._stars: tuple[Any, list[Mark]] = (None, [])
         self._name = name_of(simulation)
 
@@ -126,12 +126,14 @@ class ModernStyle:
         fog = None if scene.fog is None else ground.shown_fog(scene.fog, theme)
         if scene.fog is not None:
             marks += self._hatch(scene, layout)
-        for thing in things:
-            marks += self._body(thing, scene, layout)
+        body_marks, groups = self._bodies(things, scene, layout)
+        marks += body_marks
         for picture in scene.pictures:
             picture.zorder = bodies.STILL_Z if by_number[picture.object].kind == "still" else USER_ZORDER + 1.3
         marks += self._views(scene, by_number, crowd, layout)
-        beads = self._ways(things, crowd, layout, request, marks)
+        way_marks, way_groups, beads = self._ways(things, crowd, layout, request)
+        marks += way_marks
+        groups += way_groups
         marks += [self._kept(mark) for mark in scene.marks if mark.part in _ADDED_PARTS]
         labels += [one for one in scene.labels if one.part in ("field", "plan")]
         own, others = signs.touches(
@@ -142,11 +144,17 @@ class ModernStyle:
             self._stars = touched, signs.star_marks(own, others, layout, theme, level=crowd.level)
         marks += self._stars[1]
         for thing in things:
-            if thing.kind == "robot" and thing.shown:
-                marks += signs.state_marks(thing, layout, theme, level=crowd.level)
+            if thing.kind == "robot" and thing.shown and (thing.state or thing.picked):
+                marks += self._made(
+                    ("sign", thing.number),
+                    (thing.around, thing.state, thing.picked, crowd.level, thing.hit),
+                    lambda: signs.state_marks(thing, layout, theme, level=crowd.level),  # noqa: B023 - called at once
+                )
         labels += self._same(("axes",), lambda: ([], frame.axis_labels(layout, theme)))[1] if request.axes else []
-        wishes = _wishes(things, own, crowd, layout, theme) if request.names else []
-        leaders, named, dropped = names.place_names(wishes, marks, labels, layout, theme, self.sizes, self._boxes)
+        wishes = names.wishes_of(things, own, crowd, layout, theme) if request.names else []
+        leaders, named, dropped = names.place_names(
+            wishes, marks, groups, labels, layout, theme, self.sizes, self._boxes
+        )
         marks += leaders
         labels += named
         self.notes = _notes(crowd, dropped)
@@ -175,7 +183,14 @@ class ModernStyle:
             pictures=scene.pictures,
             fog=fog,
             grids=grids,
+            groups=[self._unchanged(group) for group in groups],
         )
+
+    def _unchanged(self, group: Group) -> Group:
+        """The group of the last frame if nothing in it has changed."""
+        key = group.part, group.zorder, group.looks[0][1].round_caps
+        self._groups[key] = group = kept(group, self._groups.get(key))
+        return group
 
     def _forget(self, layout: Layout) -> None:
         walls = self.simulation.scenario.world.boundary == "walls"
@@ -185,7 +200,8 @@ class ModernStyle:
         self._still.clear()
         self._parts.clear()
         self._boxes.clear()
-        self._goals.clear()
+        self._marks.clear()
+        self._groups.clear()
         self._stars = (None, [])
         self._head = None
         self._maps.clear()
@@ -215,14 +231,22 @@ class ModernStyle:
             self._fog = scene.fog.explored.copy(), ground.fog_marks(scene.fog, layout, self.theme)
         return self._fog[1]
 
-    def _body(self, thing: Thing, scene: Scene, layout: Layout) -> list[Mark]:
+    def _bodies(self, things: Sequence[Thing], scene: Scene, layout: Layout) -> tuple[list[Mark], list[Group]]:
+        marks, robots, people = list[Mark](), list[Thing](), list[Thing]()
+        for thing in things:
+            if thing.kind == "robot":
+                robots.append(thing)
+            elif thing.kind == "person" and thing.is_round:
+                people.append(thing)
+            elif thing.kind == "still":
+                marks += self._still_body(thing, scene)
+            else:
+                marks += bodies.moving_marks(thing, self.theme)
+        groups, more = bodies.robot_groups(robots, layout, self.theme)
+        return marks + more, [*bodies.person_groups(people, layout, self.theme), *groups]
+
+    def _still_body(self, thing: Thing, scene: Scene) -> list[Mark]:
         theme = self.theme
-        if thing.kind == "robot":
-            return bodies.robot_marks(thing, layout, theme)
-        if thing.kind == "person" and thing.is_round:
-            return bodies.person_marks(thing, layout, theme)
-        if thing.kind in ("person", "thing"):
-            return bodies.moving_marks(thing, theme)
         hidden = scene.fog is not None and thing.mark is not None and not ground.is_seen(scene.fog, thing.mark.geometry)
         known = self._still.get(thing.number)
         if known is None or known[0] is not thing.mark or known[1] != hidden:
@@ -247,36 +271,52 @@ class ModernStyle:
                 marks += sensing.scan_marks(beams, thing, layout, self.theme, scans=scans, area=area)
         return marks
 
-    def _ways(self, things: Sequence[Thing], crowd: Crowd, layout: Layout, request: Request, marks: list[Mark]) -> bool:
-        """Add trails, goals and plans; return whether trails have beads."""
-        theme, simulation = self.theme, self.simulation
+    def _ways(
+        self, things: Sequence[Thing], crowd: Crowd, layout: Layout, request: Request
+    ) -> tuple[list[Mark], list[Group], bool]:
+        """Trails, goals and plans, and whether trails have beads."""
+        theme, simulation, marks = self.theme, self.simulation, list[Mark]()
         beaded = layout.sizes.kind == "normal" and 0 < crowd.robots <= ways.MAX_BEADED
-        crowded, any_beads = crowd.people > MANY_PEOPLE, False
+        trails: dict[tuple[bool, int], list[Thing]] = {}
+        plans, any_beads = list[tuple[Thing, Floats]](), False
         for thing in things:
             robot = thing.kind == "robot"
             if not thing.shown or thing.kind == "still":
                 continue
+            level = 0 if thing.picked else crowd.level
             if thing.wants("show_trajectory"):
-                level = 0 if thing.picked else crowd.level
-                drawn = ways.trail_marks(
-                    thing, simulation, layout, theme, level=level, beads=beaded and robot, crowded=crowded
-                )
-                any_beads |= any(mark.part == "bead" for mark in drawn)
-                marks += drawn
+                trails.setdefault((robot, level if robot else 0), []).append(thing)
+                if beaded and robot and (count := ways.bead_count(thing, simulation)):
+                    any_beads = True
+                    marks += self._made(
+                        ("bead", thing.number),
+                        (count, int(simulation.state.scene[self.world]), simulation.revision),
+                        lambda: ways.bead_marks(thing, count, simulation, layout, theme),  # noqa: B023 - called at once
+                    )
             if not (thing.wants("show_goal", robot) and (crowd.level < 2 or thing.picked)):
                 continue
             goals = ways.remaining_goals(thing, simulation)
             if goals:
-                level = 0 if thing.picked else crowd.level
                 key = thing.shades, level, *(goal.tobytes() for goal in goals)
-                known = self._goals.get(thing.number)
-                if known is None or known[0] != key:
-                    made = ways.goal_marks(thing, goals, layout, theme, level=level)
-                    known = self._goals[thing.number] = key, made
-                marks += known[1]
+                marks += self._made(
+                    ("goal", thing.number),
+                    key,
+                    lambda: ways.goal_marks(thing, goals, layout, theme, level=level),  # noqa: B023 - called at once
+                )
                 if robot and request.plans and level == 0:
-                    marks += ways.plan_marks(thing, ways.path_ahead(thing, goals, simulation), layout)
-        return any_beads
+                    plans.append((thing, ways.path_ahead(thing, goals, simulation)))
+        groups = ways.plan_groups(plans, layout)
+        for (_, level), members in trails.items():
+            crowded = crowd.people > MANY_PEOPLE
+            groups += ways.trail_groups(members, simulation, layout, theme, level=level, crowded=crowded)
+        return marks, groups, any_beads
+
+    def _made(self, what: tuple[str, int], key: Any, make: Callable[[], list[Mark]]) -> list[Mark]:
+        """Marks of an object that stay the same objects as long as the key does."""
+        known = self._marks.get(what)
+        if known is None or known[0] != key:
+            known = self._marks[what] = key, make()
+        return known[1]
 
     @staticmethod
     def _kept(mark: Mark) -> Mark:
@@ -313,42 +353,6 @@ def name_of(simulation: Simulation) -> str:
     if scenario.name == "scenario" and scenario.source:
         return Path(scenario.source).absolute().parent.name
     return scenario.name
-
-
-def _wishes(
-    things: Sequence[Thing], own: Sequence[Event], crowd: Crowd, layout: Layout, theme: Theme
-) -> list[names.Wish]:
-    """Names and times of contacts, the most important first."""
-    star = layout.metres(layout.sizes.star)
-    named = [thing for thing in things if _has_name(thing, crowd)]
-    first = [thing.picked or thing.state == "collided" for thing in named]
-    wishes = [_name_wish(thing) for thing in compress(named, first)]
-    if crowd.level < 2 and len(own) <= CROWD["timed"]:
-        for number, event in enumerate(own):
-            place, text = (float(event.x), float(event.y)), f"{event.time:.1f} s"
-            wishes.append(names.Wish(frame.FRAME - number, "moment", text, theme.danger, place, (star, star), False))
-    return wishes + [_name_wish(thing) for thing, early in zip(named, first, strict=True) if not early]
-
-
-def _has_name(thing: Thing, crowd: Crowd) -> bool:
-    if not thing.shown or not thing.wants("show_text", thing.kind == "robot"):
-        return False
-    if thing.kind != "robot":
-        return "show_text" in thing.view.record.plot.model_fields_set and thing.view.shape != "walls"
-    chosen = thing.picked or (thing.state == "collided" and crowd.level < 2)
-    return crowd.level == 0 or chosen
-
-
-def _name_wish(thing: Thing) -> names.Wish:
-    view, drawing = thing.view, thing.view.drawing
-    unnamed = view.name == f"{view.role}_{view.id}"
-    text = (view.name if unnamed else drawing.label) if drawing.text is None else str(drawing.text)
-    shape = Circle(*thing.drawn_at[:2], thing.body.radius) if thing.mark is None else thing.mark.geometry
-    left, bottom, right, top = bounds(shape)
-    reach = max((right - left) / 2, thing.glyph_radius), max((top - bottom) / 2, thing.glyph_radius)
-    if not thing.is_round and thing.glyph_radius <= thing.body.radius:
-        reach = (right - left) / 2, (top - bottom) / 2
-    return names.Wish(thing.number, "name", text, thing.shades.name, ((left + right) / 2, (bottom + top) / 2), reach)
 
 
 def _notes(crowd: Crowd, dropped: int) -> list[str]:

@@ -37,6 +37,8 @@ class Thing:
     """One object.
 
     Attributes:
+        number: Id of the object.
+        is_round: Whether its body is a disc about its position.
         mark: The mark of its body, with its true footprint; None for one that is drawn as an image or not at all.
         drawn_at: x, y [m], heading [rad] at which it is drawn; before it appears, where it will.
         course: Where it is going, which may differ from its heading [rad].
@@ -47,9 +49,11 @@ class Thing:
     """
 
     view: ObjectView
+    number: int
     kind: Kind
     shades: Shades
     body: Body
+    is_round: bool
     mark: Mark | None
     drawn_at: tuple[float, float, float]
     course: float
@@ -60,16 +64,6 @@ class Thing:
     hit: Event | None
     picked: bool
     overrides: Mapping[str, Any]
-
-    @property
-    def number(self) -> int:
-        """Id of the object."""
-        return self.view.id
-
-    @property
-    def is_round(self) -> bool:
-        """Whether its body is a disc about its position."""
-        return self.body.kind == "circle" and self.body.middle == (0.0, 0.0)
 
     @property
     def half_width(self) -> float:
@@ -146,30 +140,42 @@ def read_things(
     """
     marks = {mark.object: mark for mark in scene.marks if mark.part == "body"}
     images = {picture.object for picture in scene.pictures}
-    present = [view for view in views(simulation, world) if view.id in marks or view.id in images]
+    objects = views(simulation, world)
+    first, end = (objects[0].row, objects[-1].row + 1) if objects else (0, 0)
+    columns = (
+        values[first:end].tolist()
+        for values in (simulation.pose, simulation.appeared, simulation.arrived, simulation.stopped)
+    )
+    rows = [row for row in zip(objects, *columns, strict=True) if row[0].id in marks or row[0].id in images]
     hits = first_collisions(simulation, list(events))
-    colors = _colors(present)
+    colors = _colors([row[0] for row in rows])
+    shades: dict[tuple[Kind, Any], Shades] = {}
     x0, x1, y0, y1 = layout.world
     things = list[Thing]()
-    for view in present:
-        x, y, heading = simulation.pose[view.row].tolist()
-        if math.isnan(x) or simulation.appeared[view.row] < 0:
+    for view, (x, y, heading), appeared, arrived, stopped in rows:
+        if math.isnan(x) or appeared < 0:
             x, y, heading = simulation.state.initial_state(view.row)[:3].tolist()
-        kind, hit = kind_of(view.record), hits.get(view.name)
-        body = builder.body(view)
+        number, record = view.id, view.record
+        kind, hit, body = kind_of(record), hits.get(view.name), builder.body(view)
+        look = kind, colors[number]
+        if look not in shades:
+            shades[look] = theme.shades(*look)
+        reach = body.radius
         things.append(
             Thing(
                 view=view,
+                number=number,
                 kind=kind,
-                shades=theme.shades(kind, colors[view.id]),
+                shades=shades[look],
                 body=body,
-                mark=marks.get(view.id),
+                is_round=body.kind == "circle" and body.middle == (0.0, 0.0),
+                mark=marks.get(number),
                 drawn_at=(x, y, heading),
                 course=builder.heading_of(view, (x, y, heading)),
-                glyph_radius=body.radius,
-                shown=x0 - body.radius <= x <= x1 + body.radius and y0 - body.radius <= y <= y1 + body.radius,
-                moves=not view.record.static and view.record.kinematics is not None,
-                state=_state(simulation, view, hit),
+                glyph_radius=reach,
+                shown=x0 - reach <= x <= x1 + reach and y0 - reach <= y <= y1 + reach,
+                moves=not record.static and record.kinematics is not None,
+                state=_state(arrived, stopped, hit) if kind == "robot" else "",
                 hit=hit,
                 picked=view.name in picked,
                 overrides=overrides,
@@ -183,12 +189,10 @@ def read_things(
     return things, crowd
 
 
-def _state(simulation: Simulation, view: ObjectView, hit: Event | None) -> State:
-    if view.role != "robot":
-        return ""
-    if simulation.arrived[view.row]:
+def _state(arrived: bool, stopped: bool, hit: Event | None) -> State:
+    if arrived:
         return "arrived"
-    if not simulation.stopped[view.row]:
+    if not stopped:
         return ""  # a robot that touched something and drives on has its star
     return "stopped" if hit is None else "collided"
 

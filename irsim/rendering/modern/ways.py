@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim import _core as core
 from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import place
 from irsim.graphics.scene.glyphs import GOAL
-from irsim.graphics.scene.scene import Circle, Line, Mark, Region, Spots, Stroke
+from irsim.graphics.scene.scene import NO_CIRCLE, Circle, Group, Look, Mark, Region, Spots, Stroke
 from irsim.graphics.scene.theme import Theme, mix
 from irsim.objects.drawing.object_marks import trajectory_points
 from irsim.rendering.modern.bodies import dart
@@ -23,7 +25,15 @@ from irsim.rendering.modern.things import Thing
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["goal_marks", "path_ahead", "plan_marks", "remaining_goals", "trail_marks"]
+__all__ = [
+    "bead_count",
+    "bead_marks",
+    "goal_marks",
+    "path_ahead",
+    "plan_groups",
+    "remaining_goals",
+    "trail_groups",
+]
 
 _PERSON_TRAIL_Z, _PLAN_Z, _TRAIL_Z, _BEAD_Z, GOAL_Z = 2.2, 2.3, 2.4, 2.45, 2.6
 _AGES = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 17.0, 23.0, math.inf)
@@ -49,94 +59,86 @@ _SAME_M, _SAME_SHARE = 1e-8, 1e-5
 """Coordinates of goals that differ by no more than this, or than this share, are the same."""
 
 
-def trail_marks(
-    thing: Thing, simulation: Simulation, layout: Layout, theme: Theme, *, level: int, beads: bool, crowded: bool
-) -> list[Mark]:
-    """The way that an object has come: opaque tints, which neither bead at joints nor blacken where they cross.
+def trail_groups(
+    things: Sequence[Thing], simulation: Simulation, layout: Layout, theme: Theme, *, level: int, crowded: bool
+) -> list[Group]:
+    """The ways that objects have come: opaque tints, which neither bead at joints nor blacken where they cross.
 
     Args:
-        thing: The object.
+        things: The objects, all robots or none.
         simulation: The simulation.
         layout: The layout.
         theme: The colours.
         level: Of robots: 0 few, 1 some, 2 many.
-        beads: Whether moments are marked on the trail.
         crowded: Whether there are many people.
     """
-    row, period = thing.view.row, float(simulation.scenario.world.step_time)
-    recorded = simulation.state.recorded(row)
-    robot = thing.kind == "robot"
-    longest = _TRAIL_S[level] if robot else _PERSON_S[crowded]
-    first = 0 if math.isinf(longest) else max(0, recorded - 1 - round(longest / period))
-    states = simulation.state.trajectory(row, first)
-    if first == 0:
-        start = simulation.state.initial_state(row)
-        states = np.concatenate([start[None, : states.shape[1]], states]) if len(states) else states
-    if len(states) < 2:
+    if not things:
         return []
-    points, color = trajectory_points(thing.body, states), thing.shades.edge
+    period, robot = float(simulation.scenario.world.step_time), things[0].kind == "robot"
+    longest = _TRAIL_S[level] if robot else _PERSON_S[crowded]
     widths, zorder = (layout.sizes.trail, _TRAIL_Z) if robot else ((2.0, 1.2), _PERSON_TRAIL_Z)
-    marks, last = list[Mark](), len(points) - 1
-    tints = _tints(color, theme.paper, robot, widths, robot and level > 0)
-    ends = [max(0, last - round(young / period)) for young, _, _ in tints]
-    begins = [0 if math.isinf(old) else max(0, last - round(old / period)) for _, old, _ in tints]
-    path = points
-    if robot:
-        kept = _spread(points, layout.metres(_STEP))
-        kept[begins] = kept[ends] = True
-        path, places = points[kept], np.cumsum(kept) - 1
-        begins, ends = places[begins].tolist(), places[ends].tolist()
-    for begin, end, (_, _, tint) in zip(begins, ends, tints, strict=True):
-        if end > begin:
-            marks.append(Mark(thing.number, "trajectory", Line(path[begin : end + 1]), None, tint, 1.0, zorder))
-    every = round(_BEAD_S / period)
-    if beads and every and first == 0 and last > every:
-        beads_at = Spots(np.ascontiguousarray(points[every:last:every]), layout.metres(_BEAD / 2))
-        marks.append(Mark(thing.number, "bead", beads_at, theme.paper, stroke(color, _BEAD_EDGE), 1.0, _BEAD_Z))
-    return marks
+    offsets = [thing.body.middle[1] if thing.body.kind == "compound" else 0.0 for thing in things]
+    ages = [-1 if math.isinf(age) else round(age / period) for age in (_AGES if robot else _PERSON_AGES)[::-1]]
+    points, ranges = core.trails(
+        simulation.state,
+        [thing.view.row for thing in things],
+        offsets,
+        ages,
+        -1 if math.isinf(longest) else round(longest / period),
+        layout.metres(_STEP) if robot else 0.0,
+    )
+    tints = [_tints(thing.shades.edge, theme.paper, robot, widths, robot and level > 0) for thing in things]
+    drawn: NDArray[np.bool_] = ranges[:, :, 1] > ranges[:, :, 0]
+    owners, pieces = (numbers.tolist() for numbers in np.nonzero(drawn))
+    if not owners:
+        return []
+    looks = [tints[owner][piece] for owner, piece in zip(owners, pieces, strict=True)]
+    numbers, radii = [things[owner].number for owner in owners], np.full(len(looks), NO_CIRCLE)
+    return [Group("trajectory", zorder, False, numbers, points, ranges[drawn], radii, looks)]
 
 
 @lru_cache(maxsize=512)
-def _tints(
-    color: str, paper: str, robot: bool, widths: tuple[float, float], crowded: bool
-) -> list[tuple[float, float, Stroke]]:
-    """Least age, greatest age [s] and stroke of the parts of a trail, the oldest first."""
+def _tints(color: str, paper: str, robot: bool, widths: tuple[float, float], crowded: bool) -> list[Look]:
+    """Looks of the parts of a trail, the oldest first."""
     ages, fade = (_AGES, _TRAIL_FADE_S) if robot else (_PERSON_AGES, _PERSON_FADE_S)
     newest, oldest = widths
-    tints = []
-    for young, old in zip(ages[-2::-1], ages[:0:-1], strict=True):
+    tints = list[Look]()
+    for young in ages[-2::-1]:
         rest = math.exp(-young / fade)
         share = 0.32 + 0.60 * rest if robot else 0.02 + 0.38 * rest
         width = (oldest + (newest - oldest) * rest) * (_CROWDED_WIDTH if crowded else 1.0)
-        tints.append((young, old, stroke(mix(color, paper, share), width)))
+        tints.append((None, stroke(mix(color, paper, share), width), 1.0))
     return tints
 
 
-def _spread(points: Floats, least: float) -> NDArray[np.bool_]:
-    """Which points of a trail are farther from the one before than can be seen, counted from its start."""
-    steps = points[1:] - points[:-1]
-    bins = np.zeros(len(points))
-    np.cumsum(np.hypot(steps[:, 0], steps[:, 1]), out=bins[1:])
-    bins //= least
-    kept = np.zeros(len(points), dtype=bool)
-    np.not_equal(bins[1:], bins[:-1], out=kept[1:])
-    return kept
+def bead_count(thing: Thing, simulation: Simulation) -> int:
+    """Number of moments that are marked on the trail of an object."""
+    every = round(_BEAD_S / float(simulation.scenario.world.step_time))
+    return max(0, (simulation.state.recorded(thing.view.row) - 1) // every) if every else 0
+
+
+def bead_marks(thing: Thing, count: int, simulation: Simulation, layout: Layout, theme: Theme) -> list[Mark]:
+    """Moments on the trail of an object, one every 5 s."""
+    every = round(_BEAD_S / float(simulation.scenario.world.step_time))
+    states = simulation.state.trajectory(thing.view.row)[every - 1 :: every][:count]
+    places = Spots(trajectory_points(thing.body, states), layout.metres(_BEAD / 2))
+    return [Mark(thing.number, "bead", places, theme.paper, stroke(thing.shades.edge, _BEAD_EDGE), 1.0, _BEAD_Z)]
 
 
 def remaining_goals(thing: Thing, simulation: Simulation) -> list[Floats]:
     """x, y, heading (which may be NaN) of the present goal and those after it, of an object that can drive there."""
     if not thing.moves or thing.state == "arrived" or simulation.appeared[thing.view.row] < 0:
         return []
-    goals = simulation.state.goals(thing.view.row)
     present = simulation.goal[thing.view.row][:3]
     if math.isnan(present[0]) or simulation.scenario.is_parked(thing.view.record):
         return []
+    goals = simulation.state.goals(thing.view.row)
     if len(goals) == 1:
-        return [np.asarray(present, dtype=np.float64)]
+        return [np.array(present, dtype=np.float64)]
     x, y = present[:2].tolist()
     index = next((i for i, goal in enumerate(goals) if _is_close(goal[0], x) and _is_close(goal[1], y)), len(goals))
     later = [np.array([*goal[:3], math.nan][:3], dtype=np.float64) for goal in goals[index + 1 :]]
-    return [np.asarray(present, dtype=np.float64), *later]
+    return [np.array(present, dtype=np.float64), *later]
 
 
 def _is_close(one: float, other: float) -> bool:
@@ -169,10 +171,17 @@ def _left_of(route: Floats, here: Floats) -> Floats:
     return left
 
 
-def plan_marks(thing: Thing, path: Floats, layout: Layout) -> list[Mark]:
-    """The way ahead, dashed."""
-    line = stroke(thing.shades.edge, layout.sizes.plan, _DASHES)
-    return [Mark(thing.number, "plan", Line(path), None, line, _PLAN_ALPHA, _PLAN_Z)]
+def plan_groups(paths: Sequence[tuple[Thing, Floats]], layout: Layout) -> list[Group]:
+    """The ways ahead, dashed."""
+    if not paths:
+        return []
+    looks: list[Look] = [
+        (None, stroke(thing.shades.edge, layout.sizes.plan, _DASHES), _PLAN_ALPHA) for thing, _ in paths
+    ]
+    ends = np.cumsum([0, *(len(path) for _, path in paths)])
+    ranges, points = np.stack([ends[:-1], ends[1:]], axis=1), np.concatenate([path for _, path in paths])
+    numbers = [thing.number for thing, _ in paths]
+    return [Group("plan", _PLAN_Z, False, numbers, points, ranges, np.full(len(paths), NO_CIRCLE), looks)]
 
 
 def goal_marks(thing: Thing, goals: list[Floats], layout: Layout, theme: Theme, *, level: int) -> list[Mark]:

@@ -56,7 +56,7 @@ def take(env: Any, steps: int) -> None:
 
 def parts_of(scene: Scene, number: int) -> list[str]:
     """The parts that an object consists of."""
-    return sorted(mark.part for mark in scene.marks if mark.object == number)
+    return sorted(mark.part for mark in scene.all_marks() if mark.object == number)
 
 
 def words_of(scene: Scene) -> dict[str, str]:
@@ -70,7 +70,7 @@ def title_of(scene: Scene) -> str:
 
 
 def marks_of(scene: Scene, part: str) -> list[Mark]:
-    return [mark for mark in scene.marks if mark.part == part]
+    return [mark for mark in scene.all_marks() if mark.part == part]
 
 
 def labels_of(scene: Scene, part: str) -> list[Label]:

@@ -84,7 +84,7 @@ def test_texts_cover_neither_each_other_nor_what_moves(opened: Opened, name: str
                 assert right <= layout.width, name
                 assert bottom >= 0, name
                 assert top <= layout.height, name
-            moving = [m for m in scene.marks if m.part in ("head", "badge", "goal", "dart", "contact")]
+            moving = [m for m in scene.all_marks() if m.part in ("head", "badge", "goal", "dart", "contact")]
             for mark, label in itertools.product(moving, labels_of(scene, "name") + labels_of(scene, "moment")):
                 x0, y0, x1, y1 = bounds(mark.geometry)
                 (x0, y0), (x1, y1) = layout.places(np.array([(x0, y0), (x1, y1)])).tolist()
@@ -352,7 +352,7 @@ def test_keys_of_the_scenario_win(opened: Opened) -> None:
     env = opened(ALONE.format(heading=0) + plot)
     take(env, 5)
     scene, _ = picture_of(env)
-    assert not {"goal", "plan", "trajectory", "dart"} & {mark.part for mark in scene.marks}
+    assert not {"goal", "plan", "trajectory", "dart"} & {mark.part for mark in scene.all_marks()}
     assert labels_of(scene, "name") == []
 
 

@@ -1,0 +1,99 @@
+"""Groups: marks of one part and layer whose shapes lie in common arrays, so that they are made and painted at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from irsim.common.arrays import Floats
+from irsim.graphics.scene.bodies import Pose
+from irsim.graphics.scene.scene import NO_CIRCLE, Group, Look
+
+__all__ = ["GroupBuilder", "boxes_of", "kept", "placed_areas"]
+
+
+def boxes_of(group: Group) -> Floats:
+    """(N, 4) left, bottom, right and top of the shapes of a group [m]."""
+    if len(group.points) == len(group.ranges):
+        low = high = group.points
+    else:
+        starts = group.ranges[:, 0]
+        low, high = np.minimum.reduceat(group.points, starts), np.maximum.reduceat(group.points, starts)
+    reach = np.maximum(group.radii, 0.0)[:, None]
+    return np.concatenate([low - reach, high + reach], axis=1)
+
+
+def kept(group: Group, before: Group | None) -> Group:
+    """The group of the last frame if a new one shows the same, so that the figure need not draw it again."""
+    same = (
+        before is not None
+        and group.looks == before.looks
+        and group.objects == before.objects
+        and np.array_equal(group.points, before.points)
+        and np.array_equal(group.ranges, before.ranges)
+        and np.array_equal(group.radii, before.radii)
+    )
+    return before if same and before is not None else group
+
+
+def placed_areas(
+    part: str, zorder: float, numbers: Sequence[int], rings: Sequence[Floats], poses: Sequence[Pose], looks: list[Look]
+) -> list[Group]:
+    """One group of areas with equally many corners, each turned and moved to a pose; none without any.
+
+    Args:
+        part: The part that they show.
+        zorder: Their layer.
+        numbers: Objects (N).
+        rings: N rings (M, 2) in the body frame [m].
+        poses: x, y [m] and heading [rad] of each.
+        looks: The look of each.
+    """
+    if not rings:
+        return []
+    corners = np.concatenate(rings).reshape(len(rings), -1, 2)
+    x, y, heading = np.array(poses).T[:, :, None]
+    across, up, c, s = corners[:, :, 0], corners[:, :, 1], np.cos(heading), np.sin(heading)
+    points = np.stack([c * across - s * up + x, s * across + c * up + y], axis=2).reshape(-1, 2)
+    ends = np.arange(len(rings) + 1, dtype=np.int64) * corners.shape[1]
+    ranges = np.stack([ends[:-1], ends[1:]], axis=1)
+    return [Group(part, zorder, True, numbers, points, ranges, np.full(len(rings), NO_CIRCLE), looks)]
+
+
+class GroupBuilder:
+    """Collects circles and areas of one part and layer."""
+
+    def __init__(self, part: str, zorder: float) -> None:
+        self.part, self.zorder = part, zorder
+        self._objects: list[int] = []
+        self._looks: list[Look] = []
+        self._points: list[tuple[float, float]] = []
+        self._radii: list[float] = []
+        self._ends: list[int] = []
+
+    def circle(self, number: int, x: float, y: float, radius: float, look: Look) -> None:
+        """Add a circle of an object."""
+        self._objects.append(number)
+        self._looks.append(look)
+        self._points.append((x, y))
+        self._radii.append(radius)
+        self._ends.append(len(self._points))
+
+    def area(self, number: int, ring: Floats, look: Look) -> None:
+        """Add an area of an object inside a ring (M, 2)."""
+        self._objects.append(number)
+        self._looks.append(look)
+        self._points += ring.tolist()
+        self._radii.append(NO_CIRCLE)
+        self._ends.append(len(self._points))
+
+    def groups(self) -> list[Group]:
+        """One group of everything; none without anything."""
+        if not self._looks:
+            return []
+        ranges = np.zeros((len(self._ends), 2), dtype=np.int64)
+        ranges[:, 1] = self._ends
+        ranges[1:, 0] = ranges[:-1, 1]
+        points, radii = np.array(self._points, dtype=np.float64), np.array(self._radii)
+        return [Group(self.part, self.zorder, True, self._objects, points, ranges, radii, self._looks)]
