@@ -100,9 +100,12 @@ def _lead(pair: PolicyPair, behavior: str) -> int | None:
 
 
 def _trials(episodes: Sequence[EpisodeRow], behaviors: Sequence[str]) -> list[list[EpisodeRow]]:
-    """The episodes of all policies with the same scenario and seed, scenario by scenario."""
+    """The episodes of all policies with the same scenario and seed.
+
+    They are in the order of the first policy's episodes, as in the rows: intervals depend on the order of scenarios.
+    """
     by_trial: dict[tuple[str, int], dict[str, EpisodeRow]] = {}
-    for one in placed(episodes):
+    for one in sorted(placed(episodes), key=lambda one: one.behavior != behaviors[0]):
         by_trial.setdefault((one.scenario, one.seed), {})[one.behavior] = one
-    complete = [made for _, made in sorted(by_trial.items()) if len(made) == len(behaviors)]
+    complete = [made for made in by_trial.values() if len(made) == len(behaviors)]
     return [[made[behavior] for behavior in behaviors] for made in complete]

@@ -59,6 +59,19 @@ def test_a_row_over_layouts_of_unlike_difficulty_has_a_wider_interval_than_its_e
     assert paired.low < alone[0] - 0.1
 
 
+def test_a_pair_has_the_interval_of_its_row_in_whatever_order_scenarios_are() -> None:
+    names, counts = ["first", "second"], {"first": [10] * 10, "second": [0, 2, 9, 10, 4, 10, 7, 10, 1, 10]}
+    episodes = benchmark(counts)
+    back = LAYOUTS[::-1]
+    turned = sorted(episodes, key=lambda one: back.index(one.scenario))
+    for order, made in ((LAYOUTS, episodes), (back, turned)):
+        summaries = summaries_of(made, order, names)
+        row = rows_of(summaries, names, CHANCE, {})[-1]
+        pair = next(one for one in pairs_of(summaries, names, CHANCE, {}) if one.scenario == "(all)")
+        apart, paired = pair.difference, row.paired["success"]
+        assert (apart.low, apart.high) == pytest.approx((-(paired.high or 0), -(paired.low or 0)), abs=1e-12)
+
+
 def test_layouts_that_are_alike_have_the_interval_of_independent_episodes() -> None:
     episodes = benchmark({"even": [8] * 10})
     [row] = rows_of(summaries_of(episodes, LAYOUTS, ["even"]), ["even"], CHANCE, {})[-1:]

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 
 from irsim.policies.rl_rvo_authors import VARIABLE
 from tests.benchmarks.paper import runs, tables
+from tests.benchmarks.reference.kept import source_of
 from tests.benchmarks.reference.write import PAGES
 
 __all__ = ["PAGE", "from_kept", "main", "unlike"]
@@ -24,12 +25,14 @@ PAGE = PAGES / "policies_of_the_paper.md"
 
 def from_kept() -> dict[str, str]:
     """The tables of the page whose episodes are kept, by name."""
-    rows = runs.kept_table_2()
+    rows, many = runs.kept_table_2(), runs.kept_full()
     return {
         "shares": tables.shares_table(rows),
         "beside": tables.beside_table(rows),
         "authors": tables.authors_table([*rows, *runs.kept(runs.AUTHORS)]),
         "circle": tables.circle_table(runs.kept_circle()),
+        "full": tables.full_table(many),
+        "crowded": tables.crowded_table(many),
     }
 
 
@@ -69,8 +72,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         made, lines = _made(given.check, given.full, given.write)
         for name, table in made.items():
             print(f"\n{table}")
+            if given.write:
+                page = tables.put_on_page(page, name, table)
             lines += unlike(page, name, table)
-            page = tables.put_on_page(page, name, table) if given.write else page
+        if given.write and given.full:
+            page = tables.put_on_page(page, "source", source_of(runs.FULL))
         if given.write:
             PAGE.write_text(page, encoding="utf-8")
     print("\n" + "\n".join(lines))
@@ -88,9 +94,10 @@ def _made(check: bool, full: bool, write: bool) -> tuple[dict[str, str], list[st
         return from_kept(), []
     if full:
         rows = runs.full(_say)
-        sentence = tables.full_sentence(rows)
-        is_there = sentence in PAGE.read_text(encoding="utf-8").replace("\n", " ")
-        return {"full": tables.full_table(rows)}, [f"{sentence} {'Equal' if is_there else 'differs'}"]
+        if write:
+            runs.keep_full(rows)
+        lines = _against(rows, runs.kept_full(), "full")
+        return {"full": tables.full_table(rows), "crowded": tables.crowded_table(rows)}, lines
     rows = runs.table_2(_say)
     made = {"shares": tables.shares_table(rows), "beside": tables.beside_table(rows)}
     lines = _against(rows, runs.kept_table_2(), "table_2")
@@ -115,16 +122,21 @@ def _part(seeds: int) -> list[str]:
 
 def _against(rows: Sequence[runs.Row], kept: Sequence[runs.Row], name: str) -> list[str]:
     """A line for each scenario and policy: whether all episodes are the kept ones, to the last digit."""
-    known = {(row["scenario"], row["policy"], row["seed"]): row for row in kept}
+    known = {(row["scenario"], row["policy"], row["seed"]): _unversioned(row) for row in kept}
     cells = dict[str, list[bool]]()
     for row in rows:
-        is_same = known.get((row["scenario"], row["policy"], row["seed"])) == row
+        is_same = known.get((row["scenario"], row["policy"], row["seed"])) == _unversioned(row)
         cells.setdefault(f"{row['scenario']}, {row['policy']}", []).append(is_same)
     return [
         f"{name}: {cell}: {len(same)} episodes: "
         + ("equal" if all(same) else f"{len(same) - sum(same)} differs from the kept ones")
         for cell, same in cells.items()
     ]
+
+
+def _unversioned(row: runs.Row) -> runs.Row:
+    """A line without the engine: another engine may well have equal episodes."""
+    return {key: cell for key, cell in row.items() if key != "engine"}
 
 
 def _say(text: str) -> None:

@@ -12,25 +12,30 @@ from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.benchmark import SuiteResult
 from tests.benchmarks.authors_circle import outcomes
 from tests.benchmarks.paper.tables import AUTHORS_SEEDS, POLICIES, Circle
-from tests.benchmarks.reference.kept import kept_lines
+from tests.benchmarks.reference.kept import kept_lines, write
 from tests.benchmarks.reference.write import TABLES
 
 __all__ = [
     "AUTHORS",
     "CIRCLE",
+    "FULL",
     "authors",
     "circle",
     "full",
     "keep",
     "keep_circle",
+    "keep_full",
     "kept",
     "kept_circle",
+    "kept_full",
     "kept_table_2",
     "table_2",
 ]
 
 SUITE = "random_polygons_v1"
 AUTHORS, CIRCLE = (Path(__file__).with_name(name) for name in ("authors.csv", "circle.csv"))
+FULL = "policies_of_the_paper"
+"""Name of the kept file with the tables of 1,000 episodes, see :mod:`tests.benchmarks.reference.kept`."""
 HEAD = (
     "scenario",
     "policy",
@@ -42,19 +47,20 @@ HEAD = (
     "path_length",
     "min_clearance",
 )
+FULL_HEAD = ("scenario", "policy", "seed", "outcome", "steps", "engine")
 Report = Callable[[str], None]
 Row = dict[str, str]
 
 
-def _rows(plan: Plan) -> list[Row]:
+def _rows(plan: Plan, head: Sequence[str] = HEAD) -> list[Row]:
     """The episodes of a plan as lines of a kept file."""
     result = measure_plan(plan)
     assert isinstance(result, SuiteResult)
-    return _columns(TABLES["table_2"].lines(result))
+    return _columns(TABLES["table_2"].lines(result), head)
 
 
-def _columns(lines: Sequence[Row]) -> list[Row]:
-    return [{key: line[key] for key in HEAD} for line in lines]
+def _columns(lines: Sequence[Row], head: Sequence[str] = HEAD) -> list[Row]:
+    return [{key: line[key] for key in head} for line in lines]
 
 
 def table_2(report: Report, seeds: int | None = None) -> list[Row]:
@@ -66,12 +72,18 @@ def table_2(report: Report, seeds: int | None = None) -> list[Row]:
     return rows
 
 
-def full(report: Report) -> list[Row]:
-    """The 1,000 episodes of each cell with 5 and 10 robots, and of ``footprint_orca`` with all others."""
+def full(report: Report, seeds: Sequence[int] | None = None) -> list[Row]:
+    """The 1,000 episodes of each cell with 5 and 10 robots, and of ``footprint_orca`` with all others.
+
+    Args:
+        report: Told how far it is.
+        seeds: Some of the seeds; None: all.
+    """
     rows = list[Row]()
     for policy in POLICIES:
         scenarios = None if policy == "footprint_orca" else ["robots-5", "robots-10"]
-        rows += _rows(suite_plan(SUITE, policies=[policy], full=True, scenarios=scenarios))
+        plan = suite_plan(SUITE, policies=[policy], full=seeds is None, seeds=seeds, scenarios=scenarios)
+        rows += _rows(plan, FULL_HEAD)
         report(f"{policy}: {len(rows):,} episodes are done")
     return rows
 
@@ -98,6 +110,16 @@ def circle(report: Report, seeds: int = 100) -> Iterator[Circle]:
 def kept_table_2() -> list[Row]:
     """The kept episodes of the page."""
     return _columns(kept_lines("table_2"))
+
+
+def kept_full() -> list[Row]:
+    """The kept episodes of the tables of 1,000 episodes."""
+    return kept_lines(FULL)
+
+
+def keep_full(rows: Sequence[Row]) -> None:
+    """Write the episodes of the tables of 1,000 episodes."""
+    write(FULL, FULL_HEAD, rows)
 
 
 def kept(path: Path) -> list[Row]:

@@ -17,7 +17,7 @@ __all__ = [
     "beside_table",
     "cells_of",
     "circle_table",
-    "full_sentence",
+    "crowded_table",
     "full_table",
     "on_page",
     "put_on_page",
@@ -33,7 +33,7 @@ FULL_POLICIES = ("orca", "avocado", "rl_rvo", "sarl_multi_robot", "ppo", "ppo_fr
 """The order of columns in the table of 1,000 episodes."""
 AUTHORS_SEEDS = range(100, 160)
 """Seeds of the table of the authors' weights."""
-CELLS_OF = {"shares": 2, "full": 2, "beside": 2, "authors": 1, "circle": 2}
+CELLS_OF = {"shares": 2, "full": 2, "crowded": 1, "beside": 2, "authors": 1, "circle": 2}
 """Table -> number of its first columns, which name a row."""
 _NAMES = {"ppo": "PPO (`multi_robot`)", "ppo_freeze": "PPO (`multi_robot_freeze`)"}
 _KINDS = ("success", "collision", "timeout")
@@ -100,6 +100,12 @@ def _success(rows: Sequence[Row]) -> tuple[float, float, float]:
     return 100 * count / len(rows), 100 * low, 100 * high
 
 
+def _with_interval(rows: Sequence[Row]) -> str:
+    """The share of success and its interval in %, so precisely that an interval is not empty."""
+    share, low, high = _success(rows)
+    return f"{share:.1f} [{low:.1f}, {high:.1f}]"
+
+
 def _name(policy: str) -> str:
     return _NAMES.get(policy, f"`{policy}`")
 
@@ -119,24 +125,20 @@ def full_table(rows: Sequence[Row]) -> str:
     lines = [f"| protocol | robots | {' | '.join(map(_name, FULL_POLICIES))} |", f"|{'---|' * 9}"]
     for protocol in PROTOCOLS:
         for robots in ROBOTS[:2]:
-            made = [_success(_outcomes(rows, robots, protocol, policy)) for policy in FULL_POLICIES]
-            cells = [f"{share:.0f} [{low:.0f}, {high:.0f}]" for share, low, high in made]
+            cells = [_with_interval(_outcomes(rows, robots, protocol, policy)) for policy in FULL_POLICIES]
             lines.append(f"| {protocol} | {robots} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
-def full_sentence(rows: Sequence[Row]) -> str:
-    """Shares of ``footprint_orca`` with more robots, as a sentence of the page."""
-    shares, touched = {}, 0
+def crowded_table(rows: Sequence[Row]) -> str:
+    """Success with intervals, and shares of collisions, of ``footprint_orca`` with more robots."""
+    lines = [f"| protocol | {' | '.join(map(str, ROBOTS[2:]))} robots | collisions |", f"|{'---|' * 5}"]
     for protocol in PROTOCOLS:
-        cells = [_outcomes(rows, robots, protocol, "footprint_orca") for robots in ROBOTS[2:]]
-        touched += sum(row["outcome"] == "collision" for cell in cells for row in cell)
-        first, second, third = (f"{_success(cell)[0]:.1f}".removesuffix(".0") for cell in cells)
-        shares[protocol] = f"{first}, {second} and {third} %"
-    return (
-        f"`footprint_orca` in 1,000 episodes with 15, 20 and 25 robots: freeze {shares['freeze']}, yield "
-        f"{shares['yield']}, and {touched or 'no'} collision in any of 6,000 episodes."
-    )
+        own = [_outcomes(rows, robots, protocol, "footprint_orca") for robots in ROBOTS[2:]]
+        touched = sum(row["outcome"] == "collision" for cell in own for row in cell)
+        cells = [*map(_with_interval, own), f"{touched} of {sum(map(len, own)):,}"]
+        lines.append(f"| {protocol} | {' | '.join(cells)} |")
+    return "\n".join(lines)
 
 
 def beside_table(rows: Sequence[Row]) -> str:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, NamedTuple, get_args
 
-from irsim.bridges.pedestrians.cases import Cases, read_cases
-from irsim.bridges.pedestrians.imitation import GOALS, RADIUS, goals_of, imitate
-from irsim.bridges.pedestrians.likeness import Likeness, contacts, likeness
+from irsim.bridges.pedestrians.cases import read_cases
+from irsim.bridges.pedestrians.imitation import GOALS, RADIUS
+from irsim.bridges.pedestrians.likeness import contacts
 from irsim.components.behaviors._people import FITTED, People
 from tests.benchmarks.pedestrians.fit import distance
 from tests.benchmarks.pedestrians.human import FILES
+from tests.benchmarks.pedestrians.walks import Walks, cells, walks_of
 
 NOT_SHIPPED = {
     "sfm": {
@@ -26,42 +28,71 @@ NOT_SHIPPED = {
 """The options that the search found in hotel: they are worse than the defaults in the other recordings."""
 
 
-def parts(data: Path) -> dict[str, str]:
-    """The text of this part of the page."""
+class Row(NamedTuple):
+    """A set of options in a recording.
+
+    Attributes:
+        fitted_to: Recording to which the options were fitted, or ``defaults``.
+        recording: The recording.
+        known: People who know where they want to go.
+        blind: People who go straight on.
+        recorded: Share of people who touch others in the recording.
+    """
+
+    fitted_to: str
+    recording: str
+    known: Walks
+    blind: Walks
+    recorded: float
+
+
+def compare(data: Path) -> dict[str, list[Row]]:
+    """Behavior → the defaults and each set of options in all recordings, with both goals."""
     recordings = {name.lower(): read_cases(data / file) for name, file in FILES.items()}
+    made: dict[str, list[Row]] = {}
+    for behavior in FITTED:
+        sets: dict[str, dict[str, Any]] = {"defaults": {}, **{name: {"people": name} for name in FITTED[behavior]}}
+        sets["hotel"] = NOT_SHIPPED[behavior]
+        for fitted_to, options in sets.items():
+            for name, cases in recordings.items():
+                known, blind = (
+                    walks_of(cases, f"{behavior}, {fitted_to}", {"name": behavior, **options}, goal) for goal in GOALS
+                )
+                made.setdefault(behavior, []).append(
+                    Row(fitted_to, name, known, blind, contacts(cases, cases.truth, RADIUS))
+                )
+    return made
+
+
+def parts(compared: Mapping[str, Sequence[Row]]) -> dict[str, str]:
+    """The text of this part of the page."""
     return {
-        f"fitted_{behavior}": f"**`{behavior}`**\n\n" + "\n".join(table(recordings, behavior)) for behavior in FITTED
+        f"fitted_{behavior}": "\n".join([f"**`{behavior}`**\n", *table(rows)]) for behavior, rows in compared.items()
     }
 
 
-def table(recordings: dict[str, Cases], behavior: str) -> list[str]:
+def table(rows: Sequence[Row]) -> list[str]:
     """The defaults of a behavior and each set of options, in some recordings."""
-    heads = ("fitted to", "tested on", "ADE [m]", "FDE [m]", "contacts", "recorded", "nearest [m]", "speed [m/s]")
-    heads += ("distance", "ADE, goal extrapolated [m]")
-    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
-    sets: dict[str, dict[str, Any]] = {"defaults": {}, **{name: {"people": name} for name in FITTED[behavior]}}
-    sets["hotel"] = NOT_SHIPPED[behavior]
-    for fitted_to, options in sets.items():
-        for name, cases in recordings.items():
-            known, blind = (
-                likeness(cases, imitate(cases, {"name": behavior, **options}, goals_of(cases, goal)), RADIUS)
-                for goal in GOALS
-            )
-            lines.append(_line(fitted_to, name, known, blind, contacts(cases, cases.truth, RADIUS)))
-    return lines
+    titles = ("fitted to", "tested on", "ADE [m]", "FDE [m]", "contacts", "recorded", "nearest [m]", "speed [m/s]")
+    titles += ("distance", "ADE, goal extrapolated [m]")
+    return [f"| {' | '.join(titles)} |", "|---" * len(titles) + "|", *map(_line, rows)]
 
 
-def _line(fitted_to: str, name: str, known: Likeness, blind: Likeness, recorded: float) -> str:
-    cells = [
-        f"`people: {fitted_to}`" if fitted_to in get_args(People) else fitted_to,
-        f"**{name}**" if fitted_to == name else name,
-        f"{known.ade:.2f}",
-        f"{known.fde:.2f}",
-        f"{known.contacts:.1%}",
-        f"{recorded:.1%}",
+def _line(row: Row) -> str:
+    known, blind = row.known.likeness, row.blind.likeness
+    shown = [
+        heads(row.fitted_to, row.recording),
+        *cells(known),
+        f"{row.recorded:.1%}",
         f"{known.nearest:.3f}",
         f"{known.speed:.3f}",
-        f"{distance(known, recorded):.3f}",
+        f"{distance(known, row.recorded):.3f}",
         f"{blind.ade:.2f}",
     ]
-    return f"| {' | '.join(cells)} |"
+    return f"{' | '.join(shown)} |"
+
+
+def heads(fitted_to: str, recording: str) -> str:
+    """The first cells of a row."""
+    options = f"`people: {fitted_to}`" if fitted_to in get_args(People) else fitted_to
+    return f"| {options} | {f'**{recording}**' if fitted_to == recording else recording}"

@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from irsim.bridges.pedestrians.comparison import Compared, compare_pedestrians
-from irsim.bridges.pedestrians.imitation import GOALS, GoalName
+from irsim.bridges.pedestrians.cases import read_cases
+from irsim.bridges.pedestrians.comparison import CONSTANT_VELOCITY
+from irsim.bridges.pedestrians.imitation import GOALS, RADIUS
+from irsim.bridges.pedestrians.likeness import contacts
 from irsim.bridges.pedestrians.published import SHA256
 from irsim.common.hashing import file_digest
+from irsim.scenario.behavior_override import parse_behavior
+from tests.benchmarks.pedestrians.walks import Walks, cells, constant_velocity, walks_of
 
 FILES = {"ETH": "eth_obsmat.txt", "hotel": "hotel_obsmat.txt", "zara01": "trajectron_zara01.txt"}
 """Name on the page -> file."""
@@ -32,15 +36,19 @@ def files_table(data: Path) -> str:
     return "\n".join(lines)
 
 
-def compare(data: Path, names: Sequence[str] = tuple(FILES), behaviors: Sequence[str] = BEHAVIORS) -> Compared:
-    """Behaviors beside the people of some recordings."""
-    return compare_pedestrians([data / FILES[name] for name in names], behaviors)
+def compare(data: Path, names: Sequence[str] = tuple(FILES), behaviors: Sequence[str] = BEHAVIORS) -> list[Walks]:
+    """Behaviors in the place of the people of some recordings."""
+    made = []
+    for name in names:
+        cases = read_cases(data / FILES[name])
+        made.append(constant_velocity(cases))
+        made += [walks_of(cases, text, parse_behavior(text), goal) for text in behaviors for goal in GOALS]
+    return made
 
 
-def table(compared: Compared, name: str) -> list[str]:
+def table(walks: Sequence[Walks], name: str) -> list[str]:
     """The table of one recording."""
-    stem = Path(FILES[name]).stem
-    rows = [row for row in compared.rows if row.recording == stem]
+    rows = [row for row in walks if row.recording == Path(FILES[name]).stem]
     lines = [
         f"**{name}**: {rows[0].likeness.cases} cases",
         "",
@@ -50,35 +58,39 @@ def table(compared: Compared, name: str) -> list[str]:
     for row in rows:
         one = row.likeness
         lines.append(
-            f"| {_name(row.behavior)} | {row.goal or '–'} | {one.ade:.2f} | {one.fde:.2f} | {one.contacts:.1%} "
+            f"| {named(row.behavior)} | {row.goal or '–'} | {' | '.join(cells(one))} "
             f"| {one.speed:.3f} | {one.nearest:.3f} |"
         )
     return lines
 
 
-def parts(compared: Compared) -> dict[str, str]:
-    """The text of this part of the page."""
-    ours = [_ours(compared, "constant velocity", ""), *(_ours(compared, name, GOALS[1]) for name in BEHAVIORS)]
+def parts(data: Path, walks: Sequence[Walks]) -> dict[str, str]:
+    """The text of this part of the page.
+
+    Args:
+        data: Folder of the recordings.
+        walks: The result of :func:`compare`.
+    """
+    ours = [_ours(walks, CONSTANT_VELOCITY, ""), *(_ours(walks, name, GOALS[1]) for name in BEHAVIORS)]
+    recorded = [(name, read_cases(data / file)) for name, file in FILES.items()]
     return {
-        "radius": f"{compared.radius:g}",
-        "recorded": ", ".join(f"{name} {compared.contacts[Path(file).stem]:.1%}" for name, file in FILES.items()),
-        "tables": "\n\n".join("\n".join(table(compared, name)) for name in FILES),
+        "radius": f"{RADIUS:g}",
+        "recorded": ", ".join(f"{name} {contacts(cases, cases.truth, RADIUS):.1%}" for name, cases in recorded),
+        "tables": "\n\n".join("\n".join(table(walks, name)) for name in FILES),
         "ours": "\n".join(ours),
     }
 
 
-def _ours(compared: Compared, behavior: str, goal: GoalName | str) -> str:
-    cells = []
+def _ours(walks: Sequence[Walks], behavior: str, goal: str) -> str:
+    shown = []
     for name in ("hotel", "zara01"):
-        row = next(
-            row
-            for row in compared.rows
-            if (row.recording, row.behavior, row.goal) == (Path(FILES[name]).stem, behavior, goal)
-        )
-        cells.append(f"{row.likeness.ade:.2f} / {row.likeness.fde:.2f}")
-    how = f"{_name(behavior)}, goal {goal}" if goal else behavior
-    return f"| this page | {how} | {cells[0]} | {cells[1]} |"
+        wanted = (Path(FILES[name]).stem, behavior, goal)
+        row = next(row for row in walks if (row.recording, row.behavior, row.goal) == wanted)
+        shown.append(f"{row.likeness.ade:.2f} / {row.likeness.fde:.2f}")
+    how = f"{named(behavior)}, goal {goal}" if goal else behavior
+    return f"| this page | {how} | {shown[0]} | {shown[1]} |"
 
 
-def _name(behavior: str) -> str:
-    return behavior if behavior == "constant velocity" else f"`{behavior}`"
+def named(behavior: str) -> str:
+    """A behavior as the page names it."""
+    return behavior if behavior == CONSTANT_VELOCITY else f"`{behavior}`"

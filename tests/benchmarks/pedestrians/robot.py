@@ -6,17 +6,18 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from irsim.benchmarks.episode import Job, Task, run_task
 from irsim.benchmarks.plan import Plan
 from irsim.benchmarks.stored import measure_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.bridges.pedestrians.published import RECORDINGS, write_pedestrians_suite
-from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion
+from irsim.results.benchmark import BenchmarkRow, Estimate, Proportion, SuiteResult
 from tests.benchmarks.pedestrians.human import FILES
+from tests.benchmarks.reference.kept import cells_of, columns_of, write
 
-POLICIES = ("orca", "sfm", "dash", "avocado", "footprint_orca")
-EPISODES = Path(__file__).with_name("episodes.csv")
-"""Episodes on record: the first seed of each window of hotel under the policies of the suite."""
+POLICIES = ("orca", "{name: orca}", "sfm", "dash", "avocado", "footprint_orca")
+"""``orca`` with the options of the suite, and policies with their defaults."""
+KEPT = "pedestrians_v1"
+"""Name of the kept file with the episodes, see :mod:`tests.benchmarks.reference.kept`."""
 
 
 def plan_of(data: Path, policies: Sequence[str] | None = POLICIES, **chosen: object) -> Plan:
@@ -27,23 +28,31 @@ def plan_of(data: Path, policies: Sequence[str] | None = POLICIES, **chosen: obj
         return suite_plan(made.file, policies=policies, **chosen)  # type: ignore[arg-type]
 
 
-def episodes(plan: Plan) -> list[str]:
-    """Lines of the first seed of each window of hotel: scenario, policy, outcome, number of steps."""
-    lines = []
-    for one in plan.scenarios:
-        for name, policy in list(plan.policies.items())[:3] if one.name.startswith("hotel-") else ():
-            result = run_task(Task(Job(one.text, None, policy, None, True, (), (), plan.until), plan.seeds[0]))
-            lines.append(f"{one.name},{name},{result['outcome']},{result['steps']}")
-    return lines
+def shown(policy: str) -> str:
+    """A policy as the page names it."""
+    return "orca of the suite" if policy == "orca" else policy
 
 
-def measure(data: Path) -> tuple[Plan, BenchmarkResult]:
-    """Run the suite."""
-    plan = plan_of(data)
-    return plan, measure_plan(plan)
+def lines_of(plan: Plan, result: SuiteResult) -> list[dict[str, str]]:
+    """The kept lines of the episodes of the suite."""
+    labels = {text: name for name, text in plan.policies.items()}
+    return [cells_of(one, labels[one.behavior], result.engine) for one in result.episodes]
 
 
-def parts(plan: Plan, result: BenchmarkResult) -> dict[str, str]:
+def measure(plan: Plan) -> SuiteResult:
+    """Run the suite, or a part of it."""
+    result = measure_plan(plan)
+    assert isinstance(result, SuiteResult)
+    return result
+
+
+def keep(plan: Plan, result: SuiteResult) -> None:
+    """Keep the episodes."""
+    lines = lines_of(plan, result)
+    write(KEPT, columns_of(lines), lines)
+
+
+def parts(plan: Plan, result: SuiteResult) -> dict[str, str]:
     """The text of this part of the page."""
     lines = [
         "| recording | policy | n | success | collision | time-out | time [s] | nearest [m] | within 0.5 m |",
@@ -59,7 +68,7 @@ def _line(where: str, policy: str, row: BenchmarkRow) -> str:
     metrics = row.metrics
     cells = [
         where.strip("()").removeprefix("all ") if where != "(all)" else "all",
-        f"`{policy}`",
+        f"`{shown(policy)}`",
         str(row.episodes),
         _share(row.success),
         _share(row.collision),

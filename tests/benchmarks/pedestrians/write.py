@@ -13,22 +13,28 @@ from pathlib import Path
 from string import Formatter
 
 from tests.benchmarks.pedestrians import corridor, fitted, human, robot
+from tests.benchmarks.pedestrians.walks import CASES, KEPT, keep
+from tests.benchmarks.reference.kept import source_of
 
 PAGE = Path(__file__).resolve().parents[3] / "skills" / "irsim-benchmark" / "results" / "pedestrians.md"
 TEXT = Path(__file__).with_name("page.md")
 
 
-def page(data: Path) -> str:
-    """The whole page."""
-    text = TEXT.read_text(encoding="utf-8")
-    parts = {
-        "files": human.files_table(data),
-        **human.parts(human.compare(data)),
-        **fitted.parts(data),
+def measure(data: Path) -> str:
+    """Measure everything, keep what the tables are made of, and make the page."""
+    walks, options, plan = human.compare(data), fitted.compare(data), robot.plan_of(data)
+    result = robot.measure(plan)
+    keep([*walks, *(one for rows in options.values() for row in rows for one in (row.known, row.blind))])
+    robot.keep(plan, result)
+    return TEXT.read_text(encoding="utf-8").format(
+        files=human.files_table(data),
+        cases=source_of(KEPT, CASES),
+        episodes=source_of(robot.KEPT),
+        **human.parts(data, walks),
+        **fitted.parts(options),
         **corridor.parts(),
-        **robot.parts(*robot.measure(data)),
-    }
-    return text.format(**parts)
+        **robot.parts(plan, result),
+    )
 
 
 def with_words(shown: str, old: str, new: str) -> str:
@@ -55,6 +61,5 @@ if __name__ == "__main__" and sys.argv[1] == "--words":
 elif __name__ == "__main__":
     folder = Path(sys.argv[1])
     print(human.files_table(folder))
-    PAGE.write_text(page(folder), encoding="utf-8")
-    robot.EPISODES.write_text("\n".join(robot.episodes(robot.plan_of(folder))) + "\n", encoding="utf-8")
+    PAGE.write_text(measure(folder), encoding="utf-8")
     print(f"wrote {PAGE}")

@@ -119,11 +119,16 @@ def write(name: str, head: Sequence[str], lines: Iterable[Line]) -> None:
     _path(name).write_bytes(gzip.compress(text.getvalue().encode(), 9, mtime=0))
 
 
-def source_of(name: str) -> str:
-    """The sentence of a page that says where its episodes are."""
+def source_of(name: str, what: str = "All episodes") -> str:
+    """The sentence of a page that says where its episodes are.
+
+    Args:
+        name: Name of the table.
+        what: What its lines hold.
+    """
     where = f"`{_path(name).relative_to(FOLDER.parents[2]).as_posix()}` of the repository"
     lines = f"whose lines (`python -m tests.benchmarks.reference.kept {name}`) have SHA-256"
-    return f"All episodes: {where}, {lines} `{digest(kept_text(name))}`."
+    return f"{what}: {where}, {lines} `{digest(kept_text(name))}`."
 
 
 def is_kept(name: str) -> bool:

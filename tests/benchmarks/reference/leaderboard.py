@@ -19,6 +19,7 @@ from irsim.policies.catalog import open_policy
 from irsim.policies.description import list_policies
 from irsim.results.benchmark import EpisodeRow, Estimate, Proportion
 from irsim.scenario.behavior_override import parse_behavior
+from tests.benchmarks.reference.remarks import remark
 from tests.benchmarks.reference.write import PAGES, TABLES, episodes_of, kept_of
 
 __all__ = ["LEFT_OUT", "LEFT_OUT_OF_SUITES", "PAGE", "Standing", "leaderboard", "standings", "unlisted_policies"]
@@ -52,33 +53,14 @@ that are trained here only `multi_robot_v2` has met the limits of acceleration t
 """
 _OTHERS = """\
 One policy among others is in [mixed_v2](mixed_v2.md). Recorded people are in [pedestrians](pedestrians.md): they do
-not make way, which `orca` is told there (`responsibility: 1`, and its options were chosen; the others have their
-defaults). Successes in {n} episodes, of {seeds} seeds from 100,000 on in each of {windows} windows:
+not make way. The options of `orca of the suite` were chosen, and no record says on which windows; the others have
+their defaults. Successes in {n} episodes, of {seeds} seeds from 100,000 on in each of {windows} windows:
 {shares}.
 """
-_PEOPLE = re.compile(r"^\| all \| (`\w+`) \| (\d+) \| (\d+ %) ", re.MULTILINE)
+_PEOPLE = re.compile(r"^\| all \| (`[^`]+`) \| (\d+) \| (\d+ %) ", re.MULTILINE)
 """Policy, number of episodes and success in a row over all recordings of the page on pedestrians."""
 _SEEDS_OF_PEOPLE = 10
 """Number of seeds in each window of the page on pedestrians."""
-REMARKS = {
-    "social_v2": (
-        "Under freeze no policy gets all robots through `bottleneck` (0 of 350 episodes), so 11 of 12 scenarios are "
-        "the most that can be won. Under yield that scenario alone separates policies that make way after arrival "
-        "(`sfm`, `footprint_orca` 50 of 50, `avocado` 48, `orca` 40) from the others (`rvo` 5, `as-written` and "
-        "`dash` 0)."
-    ),
-    "clutter_v2": (
-        "The suite calls a seed unreachable if its planner finds no path: 11 of posts-45. `footprint_orca` crosses 7 "
-        "of them, which is 7 of the 30 episodes that it wins over `follow`. It passes the posts of posts-45 within "
-        "1.6 mm (median of the smallest clearance; `follow` 37 mm)."
-    ),
-    "crowdnav_circle_v2": (
-        "The lead depends on the scenes. Without the scenarios `step-…`, which repeat others at other periods, it is 5 "
-        "points, and its interval holds 0. Where 15 or 20 people do not see the robot, `rvo` wins more: 75 and 66, 40 "
-        "and 21 on the circle, 67 and 58, 57 and 47 in the square, of 100 each."
-    ),
-}
-"""Table -> what its rows over all scenarios do not show; made from its kept episodes."""
 LEFT_OUT = {
     "random": "it draws its controls",
     "replay": "it repeats a recording and does not decide",
@@ -196,8 +178,7 @@ def _section(name: str) -> Iterator[str]:
         for knows in dict.fromkeys(one.knows for one in ranked):
             yield from (_row(protocol, one) for one in ranked if one.knows == knows)
         leads.append(_lead(protocol, ranked))
-    remark = [REMARKS[name]] if name in REMARKS else []
-    yield "\n" + " ".join([*leads, *remark]) + "\n"
+    yield "\n" + " ".join([*leads, *remark(name)]) + "\n"
 
 
 def _row(protocol: str, one: Standing) -> str:
