@@ -216,7 +216,7 @@ void bind_pictures(nb::module_& m) {
             self.painter.image(self.own(pixels), pixels_of(above), left, top);
           },
           nb::arg("pixels"), nb::arg("above"), nb::arg("left"), nb::arg("top"))
-      .def("take_boxes", [](BoundPainter& self) { return list_of(merged(self.painter.take_boxes())); })
+      .def("take_boxes", [](BoundPainter& self) { return list_of(gathered(self.painter.take_boxes())); })
       .def(
           "line_mask",
           [](BoundPainter& self, const MaskArray& mask, const PointArray& points, double width, bool round_caps,

@@ -20,7 +20,7 @@ void Painter::paint(Raster& raster, const Pixels& pixels, Ink ink) {
   const PixelBox box = raster.touched();
   if (is_empty(box)) return raster.sweep([](int, int, float) {});
   const float opacity = static_cast<float>(ink.alpha);
-  raster.sweep([&](int y, int x, float share) {
+  raster.sweep([pixels, ink, opacity](int y, int x, float share) {
     const int alpha = static_cast<int>(share * opacity + 0.5f);
     lay_over(pixels.row(y) + kChannels * x, ink, alpha);
   });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 
 namespace irsim {
 namespace {
@@ -110,8 +111,7 @@ std::vector<PixelBox> merged(const std::vector<PixelBox>& boxes) {
     if (is_empty(box)) continue;
     for (std::size_t i = 0; i < out.size();) {
       const PixelBox other = out[i];
-      const PixelBox both{std::min(box.left, other.left), std::min(box.top, other.top),
-                          std::max(box.right, other.right), std::max(box.bottom, other.bottom)};
+      const PixelBox both = around(box, other);
       if (is_empty(common(box, other)) || area(both) > area(box) + area(other)) {
         ++i;
         continue;
@@ -123,6 +123,25 @@ std::vector<PixelBox> merged(const std::vector<PixelBox>& boxes) {
     out.push_back(box);
   }
   return out;
+}
+
+std::vector<PixelBox> gathered(const std::vector<PixelBox>& boxes) {
+  constexpr std::size_t kFew = 24;  // boxes, which are merged as they are
+  constexpr int kTile = 48;         // side of the tiles in which small boxes are gathered [px]
+  if (boxes.size() <= kFew) return merged(boxes);
+  std::vector<PixelBox> few;
+  std::map<std::pair<int, int>, PixelBox> tiles;
+  for (const PixelBox& box : boxes) {
+    if (is_empty(box)) continue;
+    if (box.right - box.left > kTile || box.bottom - box.top > kTile) {
+      few.push_back(box);
+      continue;
+    }
+    const auto [place, added] = tiles.try_emplace({box.top / kTile, box.left / kTile}, box);
+    if (!added) place->second = around(place->second, box);
+  }
+  for (const auto& [place, box] : tiles) few.push_back(box);
+  return merged(few);
 }
 
 void write_rgb_rows(const Pixels& pixels, std::uint8_t* out) {

@@ -46,6 +46,10 @@ inline void lay_over(std::uint8_t* pixel, const Ink& ink, int alpha) {
     constexpr std::uint32_t kLanes = 0x00ff00ffu, kHalves = 0x00800080u;
     const std::uint8_t bytes[kChannels] = {static_cast<std::uint8_t>(ink.red), static_cast<std::uint8_t>(ink.green),
                                            static_cast<std::uint8_t>(ink.blue), 255};
+    if (alpha >= 255) {
+      std::memcpy(pixel, bytes, sizeof bytes);
+      return;
+    }
     const std::uint32_t above = word(bytes), old = word(pixel);
     const std::uint32_t part = static_cast<std::uint32_t>(alpha), rest = 255 - part;
     std::uint32_t even = (above & kLanes) * part + (old & kLanes) * rest + kHalves;
@@ -90,9 +94,17 @@ void copy_boxes(const Pixels& from, const Pixels& to, const std::vector<PixelBox
 /// Replace boxes that overlap by one around both, unless that is larger than the two.
 std::vector<PixelBox> merged(const std::vector<PixelBox>& boxes);
 
+/// Few boxes around many: small boxes that lie close together become one, and then boxes that overlap are merged.
+std::vector<PixelBox> gathered(const std::vector<PixelBox>& boxes);
+
 /// The part that two boxes share; empty, with `right <= left` or `bottom <= top`, if they share nothing.
 inline PixelBox common(const PixelBox& a, const PixelBox& b) {
   return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
+}
+
+/// The box around two boxes.
+inline PixelBox around(const PixelBox& a, const PixelBox& b) {
+  return {std::min(a.left, b.left), std::min(a.top, b.top), std::max(a.right, b.right), std::max(a.bottom, b.bottom)};
 }
 
 inline bool is_empty(const PixelBox& box) { return box.right <= box.left || box.bottom <= box.top; }

@@ -46,7 +46,8 @@ PixelBox Raster::touched() const {
   return box;
 }
 
-void Raster::edge(Vec2 from, Vec2 to) {
+/// Add an edge that may reach out of the box.
+void Raster::cut_edge(Vec2 from, Vec2 to) {
   if (!(std::isfinite(from.x) && std::isfinite(from.y) && std::isfinite(to.x) && std::isfinite(to.y))) return;
   const double high = box_.bottom - box_.top, wide = box_.right - box_.left;
   double x0 = from.x - box_.left, y0 = from.y - box_.top, x1 = to.x - box_.left, y1 = to.y - box_.top;
@@ -84,11 +85,16 @@ void Raster::inner_edge(double x0, double y0, double x1, double y1) {
     std::swap(x0, x1);
     std::swap(y0, y1);
   }
-  const double slope = (x1 - x0) / (y1 - y0);
   const int top = static_cast<int>(y0), last = static_cast<int>(rows_.size()) - 1;
   const int bottom = std::min(last, static_cast<int>(std::ceil(y1)) - 1);
   first_ = std::min(first_, box_.top + top);
   last_ = std::max(last_, box_.top + bottom);
+  if (top == bottom) {
+    part(rows_[top], deltas_.data() + static_cast<std::size_t>(top) * pitch_, x0, x1,
+         direction * static_cast<float>(y1 - y0));
+    return;
+  }
+  const double slope = (x1 - x0) / (y1 - y0);
   double x = x0, y = y0;
   for (int row = top; row <= bottom; ++row) {
     const double next = row == bottom ? y1 : row + 1.0;
@@ -98,35 +104,6 @@ void Raster::inner_edge(double x0, double y0, double x1, double y1) {
     x = end;
     y = next;
   }
-}
-
-/// Add the part of an edge within one row: it ranges over `height` of the row, from x0 to x1.
-void Raster::part(Row& row, float* deltas, double x0, double x1, float height) {
-  if (x0 > x1) std::swap(x0, x1);
-  const int limit = static_cast<int>(pitch_) - 2;
-  const int left = std::min(limit, std::max(0, static_cast<int>(x0)));
-  const int right = std::min(limit, std::max(left, static_cast<int>(x1)));
-  row.from = std::min(row.from, left);
-  row.to = std::max(row.to, right + 1);
-  const float start = static_cast<float>(x0 - left), end = static_cast<float>(x1 - right);
-  if (left == right) {
-    const float outside = height * 0.5f * (start + end);
-    deltas[left] += height - outside;
-    deltas[left + 1] += outside;
-    return;
-  }
-  const float per_column = height / static_cast<float>(x1 - x0), first = 1.0f - start;
-  float covered = 0.5f * first * first * per_column, before = covered;
-  deltas[left] += covered;
-  for (int x = left + 1; x < right; ++x) {
-    covered = (first + static_cast<float>(x - left - 1) + 0.5f) * per_column;
-    deltas[x] += covered - before;
-    before = covered;
-  }
-  // In the last column the edge ends after `end`; beyond it, the whole height is covered.
-  covered = height * (1.0f - end) + end * (first + static_cast<float>(right - left - 1) + 0.5f * end) * per_column;
-  deltas[right] += covered - before;
-  deltas[right + 1] += height - covered;
 }
 
 }  // namespace irsim

@@ -19,7 +19,15 @@ class Raster {
   void clip(PixelBox box);
 
   /// Add a directed edge; the edges of an outline must close it. x grows to the right, y downwards [px].
-  void edge(Vec2 from, Vec2 to);
+  void edge(Vec2 from, Vec2 to) {
+    const double high = box_.bottom - box_.top, wide = box_.right - box_.left;
+    const double x0 = from.x - box_.left, y0 = from.y - box_.top, x1 = to.x - box_.left, y1 = to.y - box_.top;
+    // Most edges lie in the box; comparisons with what is not a number are false.
+    const bool inside =
+        x0 >= 0.0 && x0 <= wide && x1 >= 0.0 && x1 <= wide && y0 >= 0.0 && y0 <= high && y1 >= 0.0 && y1 <= high;
+    if (!inside) return cut_edge(from, to);
+    if (y0 != y1) inner_edge(x0, y0, x1, y1);
+  }
 
   /// Add a closed outline.
   void outline(const Vec2* points, std::size_t count);
@@ -74,16 +82,19 @@ class Raster {
 
   template <class Cover>
   void sweep_row(const Row& row, float* deltas, int y, Cover& cover) {
+    const int left = box_.left, last = std::min(row.to, box_.right - left - 1);
     float sum = 0.0f;
-    for (int x = row.from; x <= row.to; ++x) {
+    for (int x = row.from; x <= last; ++x) {
       sum += deltas[x];
       deltas[x] = 0.0f;
       const float share = std::min(std::fabs(sum), 1.0f);
-      if (share > kLeastShare && x < box_.right - box_.left) cover(y, box_.left + x, share);
+      if (share > kLeastShare) cover(y, left + x, share);
     }
+    for (int x = std::max(row.from, last + 1); x <= row.to; ++x) deltas[x] = 0.0f;
   }
 
   bool read_convex(const Vec2* points, std::size_t count);
+  void cut_edge(Vec2 from, Vec2 to);
   void inner_edge(double x0, double y0, double x1, double y1);
   void part(Row& row, float* deltas, double x0, double x1, float height);
 
@@ -96,5 +107,34 @@ class Raster {
   std::vector<Side> sides_;
   PixelBox convex_;  ///< its rows, from the upper border of the box
 };
+
+/// Add the part of an edge within one row: it ranges over `height` of the row, from x0 to x1.
+inline void Raster::part(Row& row, float* deltas, double x0, double x1, float height) {
+  if (x0 > x1) std::swap(x0, x1);
+  const int limit = static_cast<int>(pitch_) - 2;
+  const int left = std::min(limit, std::max(0, static_cast<int>(x0)));
+  const int right = std::min(limit, std::max(left, static_cast<int>(x1)));
+  row.from = std::min(row.from, left);
+  row.to = std::max(row.to, right + 1);
+  const float start = static_cast<float>(x0 - left), end = static_cast<float>(x1 - right);
+  if (left == right) {
+    const float outside = height * 0.5f * (start + end);
+    deltas[left] += height - outside;
+    deltas[left + 1] += outside;
+    return;
+  }
+  const float per_column = height / static_cast<float>(x1 - x0), first = 1.0f - start;
+  float covered = 0.5f * first * first * per_column, before = covered;
+  deltas[left] += covered;
+  for (int x = left + 1; x < right; ++x) {
+    covered = (first + static_cast<float>(x - left - 1) + 0.5f) * per_column;
+    deltas[x] += covered - before;
+    before = covered;
+  }
+  // In the last column the edge ends after `end`; beyond it, the whole height is covered.
+  covered = height * (1.0f - end) + end * (first + static_cast<float>(right - left - 1) + 0.5f * end) * per_column;
+  deltas[right] += covered - before;
+  deltas[right + 1] += height - covered;
+}
 
 }  // namespace irsim

@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kSagitta = 0.02;           // distance of a circle from the polygon that stands for it [px]
 constexpr int kFewestCorners = 16;          // of such a polygon
+constexpr double kOneStep = 0.99;           // of a step around a circle; a smaller turn has one edge
 constexpr double kShortest = 1e-9;          // shorter segments are left out [px]
 constexpr double kAlignedPx = 1e-4;         // deviation up to which a segment counts as horizontal or vertical
 constexpr std::size_t kMostSnapped = 1024;  // corners; longer outlines are not snapped
@@ -32,44 +33,53 @@ void add_circle(Raster& raster, Vec2 center, double radius, bool backwards) {
   raster.edge(last, start);
 }
 
-void add_quad(Raster& raster, Vec2 a, Vec2 b, Vec2 across) {
-  const std::array<Vec2, 4> corners{a + across, a - across, b - across, b + across};
-  raster.outline(corners.data(), corners.size());
-}
-
-/// Collect a sector of a disc from `arm` on, over an angle that may be negative; the area counts in the same direction.
-void add_fan(Raster& raster, Vec2 center, Vec2 arm, double angle) {
-  const int count = std::max(1, static_cast<int>(std::ceil(std::fabs(angle) / kTurn * corners_of(norm(arm)))));
+/// Collect the edges from `arm` on around a circle, over an angle, in steps of which `corners` make a circle.
+void add_arc(Raster& raster, Vec2 center, Vec2 arm, double angle, int corners) {
+  const int count = std::max(1, static_cast<int>(std::ceil(angle / kTurn * corners)));
   const Vec2 turn = unit(angle / count);
   Vec2 last = arm;
-  raster.edge(center, center + arm);
   for (int i = 0; i < count; ++i) {
     const Vec2 next = rotate(last, turn);
     raster.edge(center + last, center + next);
     last = next;
   }
-  raster.edge(center + last, center);
 }
 
-/// Fill the gap at the outer side of a corner between two segments with these directions.
-void add_join(Raster& raster, Vec2 corner, Vec2 before, Vec2 after, const LineStyle& style) {
+/// Collect the edges of a stroke at a corner between two segments with these directions.
+///
+/// The pieces of a stroke are one quad per segment and one fan or triangle at the outer side of each corner. Edges that
+/// two of them share run in opposite directions and are left out, so that the quads end at the corner on the inner
+/// side.
+void add_corner(Raster& raster, Vec2 corner, Vec2 before, Vec2 after, const LineStyle& style, int corners) {
   const double half = style.width / 2, turn = cross(before, after), along = dot(before, after);
-  if (turn == 0.0 && along > 0.0) return;
-  const double side = turn > 0.0 ? half : -half;
+  const double side = turn > 0.0 || (turn == 0.0 && along <= 0.0) ? half : -half;
   const Vec2 from{before.y * side, -before.x * side}, to{after.y * side, -after.x * side};
-  // The pieces of a stroke run in the same direction as its quads, whichever way the line turns.
-  if (style.join == Join::kRound) {
-    if (turn >= 0.0) return add_fan(raster, corner, from, std::atan2(turn, along));
-    return add_fan(raster, corner, to, -std::atan2(turn, along));
+  if (turn == 0.0 && along > 0.0) return;
+  // A quad runs along its outer side first where the line turns to positive angles, else along its inner side.
+  const bool positive = side > 0.0;
+  const Vec2 inner_from = corner - from, inner_to = corner - to;
+  if (positive) {
+    raster.edge(corner, inner_from);
+    raster.edge(inner_to, corner);
+  } else {
+    raster.edge(inner_from, corner);
+    raster.edge(corner, inner_to);
   }
-  std::array<Vec2, 4> gap{corner, corner + from, corner + to, corner + to};
+  const Vec2 begin = positive ? from : to, end = positive ? to : from;
+  if (style.join == Join::kRound) {
+    const double sine = std::fabs(turn);
+    if (along > 0.0 && sine * corners < kTurn * kOneStep) return raster.edge(corner + begin, corner + end);
+    return add_arc(raster, corner, begin, std::atan2(sine, along), corners);
+  }
   const double half_angle = std::sqrt(std::max(0.0, (1.0 + along) / 2));  // cosine of half the change of direction
   // As Matplotlib has it, the tip is at most as many half widths away from the corner as the line has pixels.
   if (style.join == Join::kMiter && half_angle * style.width >= 1.0) {
-    gap[2] = corner + (from + to) * (0.5 / (half_angle * half_angle));
+    const Vec2 tip = corner + (from + to) * (0.5 / (half_angle * half_angle));
+    raster.edge(corner + begin, tip);
+    raster.edge(tip, corner + end);
+  } else {
+    raster.edge(corner + begin, corner + end);
   }
-  if (turn < 0.0) std::swap(gap[1], gap[3]);
-  raster.outline(gap.data(), gap.size());
 }
 
 }  // namespace
@@ -93,20 +103,30 @@ void add_stroke(Raster& raster, const std::vector<Vec2>& points, bool closed, co
   if (closed && path.size() > 1 && norm(path.front() - path.back()) <= kShortest) path.pop_back();
   if (path.size() < 2) return;
   const double half = style.width / 2;
+  const int corners = corners_of(half);
   const std::size_t count = path.size(), segments = closed ? count : count - 1;
   for (std::size_t i = 0; i < segments; ++i) {
     const Vec2 step = path[(i + 1) % count] - path[i];
     const Vec2 direction = step * (1.0 / norm(step));
     directions.push_back(direction);
-    add_quad(raster, path[i], path[(i + 1) % count], Vec2{-direction.y, direction.x} * half);
+    const Vec2 across = Vec2{-direction.y, direction.x} * half;
+    const Vec2 from = path[i], to = path[(i + 1) % count];
+    raster.edge(from - across, to - across);
+    raster.edge(to + across, from + across);
   }
   for (std::size_t i = closed ? 0 : 1; i < segments; ++i) {
-    add_join(raster, path[i], directions[(i + segments - 1) % segments], directions[i], style);
+    add_corner(raster, path[i], directions[(i + segments - 1) % segments], directions[i], style, corners);
   }
-  if (closed || !style.round_caps) return;
+  if (closed) return;
   const Vec2 first = directions.front(), last = directions.back();
-  add_fan(raster, path.front(), Vec2{-first.y, first.x} * half, kPi);
-  add_fan(raster, path.back(), Vec2{last.y, -last.x} * half, kPi);
+  const Vec2 begin = Vec2{-first.y, first.x} * half, end = Vec2{last.y, -last.x} * half;
+  if (style.round_caps) {
+    add_arc(raster, path.front(), begin, kPi, corners);
+    add_arc(raster, path.back(), end, kPi, corners);
+  } else {
+    raster.edge(path.front() + begin, path.front() - begin);
+    raster.edge(path.back() + end, path.back() - end);
+  }
 }
 
 void add_dashes(Raster& raster, const std::vector<Vec2>& points, const LineStyle& style) {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -19,11 +20,19 @@ from irsim.graphics.scene.glyphs import GLOW
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Sector, Segments, Spots, Stroke
 from irsim.graphics.scene.style import Color
 
-__all__ = ["Box", "Canvas", "geometry_path", "rgba", "without_glow"]
+__all__ = ["Box", "Canvas", "around", "geometry_path", "rgba", "without_glow"]
 
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom of a part of a canvas [px], top row first."""
 POINTS_PER_INCH = 72.0
+
+
+def around(boxes: Sequence[Box]) -> Box | None:
+    """Return the box around others; None without others."""
+    if not boxes:
+        return None
+    lefts, tops, rights, bottoms = zip(*boxes, strict=True)
+    return min(lefts), min(tops), max(rights), max(bottoms)
 
 
 class Canvas:

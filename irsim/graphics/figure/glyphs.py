@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import re
 from collections.abc import Callable, Hashable
@@ -71,7 +72,7 @@ class QuickText(Text):
     def __init__(self, glyphs: Glyphs, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self._glyphs = glyphs
-        self._composed: tuple[Hashable, list[_Piece]] | None = None
+        self._composed: tuple[Any, list[_Piece]] | None = None
         self.halo: tuple[Any, float] | None = None
 
     def draw(self, renderer: Any) -> None:
@@ -107,6 +108,10 @@ class QuickText(Text):
         self.stale = False
         return True
 
+    def move(self, x: float, y: float) -> None:
+        """Set the position without telling the axes, which a frame in which something else changes does not need."""
+        self._x, self._y = x, y
+
     def get_window_extent(self, renderer: Any = None, dpi: float | None = None) -> Bbox:
         """Return the bounding box of the text [px]."""
         if dpi is not None or not self.get_text() or not self._is_plain(renderer):
@@ -137,11 +142,12 @@ class QuickText(Text):
         """Return the bitmaps of the text, which are looked up again only if text, font, colour or halo have changed."""
         font, text = self.get_fontproperties(), self.get_text()
         names = font.get_family(), font.get_style(), font.get_variant(), font.get_weight(), font.get_stretch()
-        look = str(names), font.get_size(), font.get_file(), self.get_color(), self.get_alpha(), renderer.dpi, self.halo
-        if self._composed is None or self._composed[0] != (text, look):
+        rest = font.get_size(), font.get_file(), self.get_color(), self.get_alpha(), renderer.dpi, self.halo
+        if self._composed is None or self._composed[0] != (text, names, rest):
+            look = str(names), *rest
             texts = _PIECES.findall(text) if self.halo is None else [text]  # halos must not overlap
             pieces = [self._glyphs.get((one, look), partial(self._render_piece, one, renderer)) for one in texts]
-            self._composed = (text, look), pieces
+            self._composed = (text, copy.deepcopy(names), rest), pieces
         return self._composed[1]
 
     def _render_piece(self, piece: str, renderer: Any) -> _Piece:

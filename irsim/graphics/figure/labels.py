@@ -66,7 +66,8 @@ class LabelLayer:
             return
         shown: dict[tuple[int, str], tuple[Label, QuickText]] = {}
         view, data = self.ax.bbox, self.ax.transData
-        anchors = data.transform([label.anchor for label in labels]) if labels else np.empty((0, 2))
+        matrix, places = data.get_matrix(), np.array([label.anchor for label in labels]).reshape(-1, 2)
+        anchors = places @ matrix[:2, :2].T + matrix[:2, 2]
         inside: NDArray[np.bool_] = (anchors >= (view.x0, view.y0)) & (anchors <= (view.x1, view.y1))
         seen: NDArray[np.bool_] = np.all(inside, axis=1)
         for label in compress(labels, seen.tolist()):
@@ -155,7 +156,7 @@ def _look(label: Label) -> tuple[object, ...]:
 
 def _change(text: QuickText, before: Label | None, label: Label) -> None:
     """Let a text show a label; most labels only move."""
-    text.set_position((label.x, label.y))
+    text.move(label.x, label.y)
     if before is not None and _look(before) == _look(label):
         return
     text.set_text(printable(label.text))

@@ -14,7 +14,7 @@ from matplotlib.transforms import Affine2D
 
 from irsim.common.arrays import Floats
 from irsim.graphics.figure.brush import Work, paint, prepare
-from irsim.graphics.figure.canvas import Box, Canvas, geometry_path, rgba, without_glow
+from irsim.graphics.figure.canvas import Box, Canvas, around, geometry_path, rgba, without_glow
 from irsim.graphics.figure.dashes import SOLID
 from irsim.graphics.scene.bodies import bounds
 from irsim.graphics.scene.scene import Beams, Dots, Group, Mark, Scene
@@ -93,6 +93,9 @@ class MarkArtist(PathCollection):
     _work: Sequence[Work] = ()
     _is_plain = True
     _prepared: Sequence[Mark | Group] | None = None
+    _places: Sequence[Sequence[float]] = ()
+    _places_of: Sequence[Mark | Group] | None = None
+    _places_key: Any = None
 
     @property
     def marks(self) -> list[Mark]:
@@ -122,15 +125,18 @@ class MarkArtist(PathCollection):
         return self._is_plain
 
     def is_reached(self, canvas: Canvas, boxes: Sequence[Box]) -> bool:
-        """Whether one of the boxes of pixels reaches below the marks."""
-        if not boxes or not self.items:
+        """Whether the box around boxes of pixels reaches below the marks."""
+        outer = around(boxes)
+        if outer is None or not self.items:
             return False
-        low, high = np.array([bounds(mark.geometry) for mark in self.marks]).reshape(-1, 2, 2).transpose(1, 0, 2)
-        (left, bottom), (right, top) = canvas.to_pixels(low).T, canvas.to_pixels(high).T
-        x0, y0, x1, y1 = np.array(boxes, dtype=np.float64).T[:, :, None]
-        y0, y1 = canvas.height - y1, canvas.height - y0
-        return bool(
-            ((x1 > left + _NEAR_PX) & (x0 < right - _NEAR_PX) & (y1 > bottom + _NEAR_PX) & (y0 < top - _NEAR_PX)).any()
+        if self._places_of is not self.items or self._places_key != canvas.key:
+            corners = np.array([bounds(mark.geometry) for mark in self.marks]).reshape(-1, 2)
+            self._places = canvas.to_pixels(corners).reshape(-1, 4).tolist()
+            self._places_of, self._places_key = self.items, canvas.key
+        x0, y0, x1, y1 = outer[0], canvas.height - outer[3], outer[2], canvas.height - outer[1]
+        return any(
+            x1 > left + _NEAR_PX and x0 < right - _NEAR_PX and y1 > bottom + _NEAR_PX and y0 < top - _NEAR_PX
+            for left, bottom, right, top in self._places
         )
 
 

@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from irsim.graphics.figure.brush import paint, prepare
-from irsim.graphics.figure.canvas import Box, Canvas, rgba
+from irsim.graphics.figure.canvas import Box, Canvas, around, rgba
 from irsim.graphics.figure.layers import PARTS, MarkLayer
 from irsim.graphics.scene.scene import Mark
 from irsim.graphics.scene.tracks import GrowingLine, GrowingTrail, Track
@@ -251,11 +251,3 @@ def _in_order_of_time(trails: Sequence[GrowingTrail], drawn: Mapping[GrowingTrai
 def _is_aligned(pixels: NDArray[np.float64]) -> bool:
     """Whether each segment of a line (N, 2) runs along an axis of the picture."""
     return bool((np.abs(np.diff(pixels, axis=0)) < _ALIGNED_PX).any(axis=1).all())
-
-
-def around(boxes: Sequence[Box]) -> Box | None:
-    """Return the box around others; None without others."""
-    if not boxes:
-        return None
-    lefts, tops, rights, bottoms = zip(*boxes, strict=True)
-    return min(lefts), min(tops), max(rights), max(bottoms)

@@ -10,7 +10,7 @@ from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import Pose
 from irsim.graphics.scene.scene import NO_CIRCLE, Group, Look
 
-__all__ = ["GroupBuilder", "boxes_of", "kept", "placed_areas"]
+__all__ = ["GroupBuilder", "boxes_of", "circles", "kept", "placed_areas"]
 
 
 def boxes_of(group: Group) -> Floats:
@@ -38,7 +38,12 @@ def kept(group: Group, before: Group | None) -> Group:
 
 
 def placed_areas(
-    part: str, zorder: float, numbers: Sequence[int], rings: Sequence[Floats], poses: Sequence[Pose], looks: list[Look]
+    part: str,
+    zorder: float,
+    numbers: Sequence[int],
+    rings: Sequence[Floats],
+    poses: Sequence[Pose] | Floats,
+    looks: list[Look],
 ) -> list[Group]:
     """One group of areas with equally many corners, each turned and moved to a pose; none without any.
 
@@ -53,12 +58,31 @@ def placed_areas(
     if not rings:
         return []
     corners = np.concatenate(rings).reshape(len(rings), -1, 2)
-    x, y, heading = np.array(poses).T[:, :, None]
+    x, y, heading = np.asarray(poses).T[:, :, None]
     across, up, c, s = corners[:, :, 0], corners[:, :, 1], np.cos(heading), np.sin(heading)
     points = np.stack([c * across - s * up + x, s * across + c * up + y], axis=2).reshape(-1, 2)
     ends = np.arange(len(rings) + 1, dtype=np.int64) * corners.shape[1]
     ranges = np.stack([ends[:-1], ends[1:]], axis=1)
     return [Group(part, zorder, True, numbers, points, ranges, np.full(len(rings), NO_CIRCLE), looks)]
+
+
+def circles(
+    part: str, zorder: float, numbers: Sequence[int], places: Floats, radii: Floats, looks: list[Look]
+) -> list[Group]:
+    """One group of circles; none without any.
+
+    Args:
+        part: The part that they show.
+        zorder: Their layer.
+        numbers: Objects (N).
+        places: (N, 2) centres [m].
+        radii: (N,) radii [m].
+        looks: The look of each.
+    """
+    if not looks:
+        return []
+    ends = np.arange(len(looks) + 1, dtype=np.int64)
+    return [Group(part, zorder, True, numbers, places, np.stack([ends[:-1], ends[1:]], axis=1), radii, looks)]
 
 
 class GroupBuilder:

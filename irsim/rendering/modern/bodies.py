@@ -19,7 +19,7 @@ from irsim.graphics.scene.glyphs import (
     SMALL_PERSON_U,
     long_dart,
 )
-from irsim.graphics.scene.groups import GroupBuilder, placed_areas
+from irsim.graphics.scene.groups import GroupBuilder, circles, placed_areas
 from irsim.graphics.scene.scene import Circle, Geometry, Group, Line, Look, Mark, Region, Stroke
 from irsim.graphics.scene.theme import Shades, Theme, mix
 from irsim.rendering.modern.frame import stroke
@@ -65,26 +65,34 @@ def moving_marks(thing: Thing, theme: Theme) -> list[Mark]:
 
 def person_groups(people: Sequence[Thing], layout: Layout, theme: Theme) -> list[Group]:
     """Heads and shoulders as seen from above; the head is in front."""
-    discs, rims = GroupBuilder("halo", _PERSON_Z), GroupBuilder("halo", _PERSON_Z)
-    heads, shoulders, poses, looks = GroupBuilder("head", _PERSON_Z), list[Floats](), list[Pose](), list[Look]()
-    shown = [thing for thing in people if thing.mark is not None]
-    for thing in shown:
-        number, (x, y, _), r = thing.number, thing.drawn_at, thing.glyph_radius
-        size = "small" if r * layout.scale < SMALL_PERSON_U else "large"
-        glyph = PEOPLE[size]
-        disc, rim, body, head = _person_looks(thing.shades, theme, size, thing.mark.alpha if thing.mark else 1.0)
-        if size == "large":
-            discs.circle(number, x, y, r, disc)
-            rims.circle(number, x, y, r, rim)
-        shoulders.append(_ellipse(-glyph.behind * r, glyph.along * r, glyph.across * r))
-        poses.append((x, y, thing.course))
-        looks.append(body)
-        ahead = glyph.ahead * r
-        heads.circle(
-            number, x + ahead * math.cos(thing.course), y + ahead * math.sin(thing.course), glyph.head * r, head
+    sizes: dict[str, list[Thing]] = {"large": [], "small": []}
+    for thing in people:
+        if thing.mark is not None:
+            sizes["small" if thing.glyph_radius * layout.scale < SMALL_PERSON_U else "large"].append(thing)
+    return [group for size, members in sizes.items() if members for group in _people(members, size, theme)]
+
+
+def _people(people: Sequence[Thing], size: str, theme: Theme) -> list[Group]:
+    """Glyphs of the same size class."""
+    glyph, numbers = PEOPLE[size], [thing.number for thing in people]
+    radii = np.array([thing.glyph_radius for thing in people])
+    poses = np.array([(*thing.drawn_at[:2], thing.course) for thing in people])
+    places, course = np.ascontiguousarray(poses[:, :2]), poses[:, 2]
+    looks = [_person_looks(thing.shades, theme, size, thing.mark.alpha if thing.mark else 1.0) for thing in people]
+    discs, rims, bodies, heads = (list(one) for one in zip(*looks, strict=True))
+    shoulders = [
+        _ellipse(
+            -glyph.behind * thing.glyph_radius, glyph.along * thing.glyph_radius, glyph.across * thing.glyph_radius
         )
-    bodies = placed_areas("body", _PERSON_Z, [thing.number for thing in shown], shoulders, poses, looks)
-    return [*discs.groups(), *rims.groups(), *bodies, *heads.groups()]
+        for thing in people
+    ]
+    ahead = np.stack([np.cos(course), np.sin(course)], axis=1) * (glyph.ahead * radii)[:, None]
+    groups = []
+    if size == "large":
+        groups += circles("halo", _PERSON_Z, numbers, places, radii, discs)
+        groups += circles("halo", _PERSON_Z, numbers, places, radii, rims)
+    groups += placed_areas("body", _PERSON_Z, numbers, shoulders, poses, bodies)
+    return [*groups, *circles("head", _PERSON_Z, numbers, places + ahead, glyph.head * radii, heads)]
 
 
 @lru_cache(maxsize=512)

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from irsim.graphics.scene.scene import Bounds, Label, Line, Mark, Region, Stroke
+from irsim.graphics.scene.scene import Bounds, Label, Line, Mark, Region, Segments, Stroke
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern.layout import POINTS_PER_U, Layout, nice_length, nice_part
 
@@ -63,9 +63,10 @@ def ground_marks(layout: Layout, theme: Theme, *, walls: bool) -> list[Mark]:
     x0, x1, y0, y1 = layout.world
     step, thin = grid_step(layout), stroke(theme.grid, 1.0)
     marks = [Mark(FRAME, "paper", rectangle(x0, y0, x1, y1), theme.paper, Stroke(None), 1.0, 0.0)]
-    lines = [np.array([(x, y0), (x, y1)]) for x in lines_between(x0, x1, step)]
-    lines += [np.array([(x0, y), (x1, y)]) for y in lines_between(y0, y1, step)]
-    marks += [Mark(FRAME, "grid", Line(points), None, thin, 1.0, _GRID_Z) for points in lines]
+    lines = [((x, y0), (x, y1)) for x in lines_between(x0, x1, step)]
+    lines += [((x0, y), (x1, y)) for y in lines_between(y0, y1, step)]
+    if lines:
+        marks.append(Mark(FRAME, "grid", Segments(np.array(lines)), None, thin, 1.0, _GRID_Z))
     edge = stroke(theme.wall, layout.sizes.wall) if walls else stroke(theme.line, _EDGE)
     marks.append(Mark(FRAME, "paper", rectangle(x0, y0, x1, y1), None, edge, 1.0, _EDGE_Z))
     return marks

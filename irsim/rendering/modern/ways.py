@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from functools import lru_cache
@@ -147,28 +148,27 @@ def _is_close(one: float, other: float) -> bool:
 
 def path_ahead(thing: Thing, goals: list[Floats], simulation: Simulation) -> Floats:
     """Corners (K, 2) of the way to the goals: the route that the behavior has planned, else straight lines."""
-    here, row = np.array([thing.drawn_at[:2]]), thing.view.row
-    route = simulation.state.route(row)
-    ends = np.array([goal[:2] for goal in goals])
-    if (
-        route is None
-        or not len(route)
-        or float(np.hypot(*(route[-1, :2] - ends[0]))) > thing.view.record.goal_threshold
-    ):
-        return np.concatenate([here, ends])
-    return np.concatenate([here, _left_of(route[:, :2], here[0]), ends[1:]])
+    here, ends = thing.drawn_at[:2], np.array([goal[:2] for goal in goals])
+    route = simulation.state.route(thing.view.row)
+    if route is not None and len(route):
+        x, y = (route[-1, :2] - ends[0]).tolist()
+        if math.hypot(x, y) <= thing.view.record.goal_threshold:
+            return np.concatenate([[here], _left_of(route[:, :2], here), ends[1:]])
+    return np.concatenate([[here], ends])
 
 
-def _left_of(route: Floats, here: Floats) -> Floats:
+def _left_of(route: Floats, here: tuple[float, float]) -> Floats:
     """The corners of a route that are still ahead of a place near it."""
-    if len(route) < 2:
-        return route
-    along = np.diff(route, axis=0)
-    square = np.maximum((along**2).sum(axis=1), 1e-12)
-    share = np.clip(((here - route[:-1]) * along).sum(axis=1) / square, 0.0, 1.0)
-    nearest = int(np.hypot(*(route[:-1] + share[:, None] * along - here).T).argmin())
-    left: Floats = route[nearest + 1 :]
-    return left
+    corners, (x, y) = route.tolist(), here
+    nearest, least = 0, math.inf
+    for number, ((x0, y0), (x1, y1)) in enumerate(itertools.pairwise(corners)):
+        along, up = x1 - x0, y1 - y0
+        share = ((x - x0) * along + (y - y0) * up) / max(along * along + up * up, 1e-12)
+        share = min(1.0, max(0.0, share))
+        away = math.hypot(x0 + share * along - x, y0 + share * up - y)
+        if away < least:
+            nearest, least = number, away
+    return route if len(corners) < 2 else route[nearest + 1 :]
 
 
 def plan_groups(paths: Sequence[tuple[Thing, Floats]], layout: Layout) -> list[Group]:
