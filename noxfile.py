@@ -64,8 +64,8 @@ BLENDER = "bpy==4.5.*"
 NPM_PEERS = ("@sparkjsdev/spark@2.2.0", "three@0.180.0")
 """A renderer of Gaussian splats that ours are compared with, in a browser."""
 
-NPM_SITE = ("axe-core@4.11.0",)
-"""Checks of accessibility, for the documentation site."""
+NPM_SITE = ("axe-core@4.11.0", "lighthouse@12.2.3")
+"""Checks of accessibility and of loading, for the documentation site."""
 
 QUICK = nox.project.load_toml("pyproject.toml")["tool"]["pytest"]["ini_options"]["addopts"][-1]
 """The markers of other parts, none of which quick tests have."""
@@ -243,7 +243,7 @@ def docs(session: nox.Session) -> None:
     install(session, "-e", ".[test,docs]", PLAYWRIGHT)
     folder = Path("site").resolve()
     timed(session, "build", "python", ".ci/site/build.py", str(folder))
-    environment = {**find_chromium(session), "IRSIM_SITE": str(folder), "IRSIM_AXE": install_npm(session, NPM_SITE)}
+    environment = {**find_chromium(session), "IRSIM_SITE": str(folder), "IRSIM_NPM": install_npm(session, NPM_SITE)}
     options = ("-m", "site", "-n", "2", "--dist", "loadfile", "--durations", "10", *session.posargs)
     timed(session, "tests of the site", "pytest", *options, env=environment)
 

@@ -17,7 +17,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from commands import command_pages
+from films import with_films
 from gallery import gallery_pages
+from head import lighter
 from language import language_pages, whereabouts
 from mirror import FOLDERS, GUIDES, LISTED, files_of, mirrored, rewritten
 from pages import ROOT, Page, contents, link, once, summary_of
@@ -193,14 +195,16 @@ def lay_out(source: Path, html: Path, names: Mapping[str, object], *, jobs: str 
         raise SystemExit(f"Sphinx found mistakes (exit code {done.returncode})")
 
 
-def _finish(html: Path) -> None:
-    """Name the switches of the navigation, and let each page find the list of versions from its own place."""
+def _finish(html: Path, pages: list[Page]) -> None:
+    """Let pages load little, name the switches of the navigation, and find the list of versions from their places."""
+    about = {page.path: page.summary for page in pages}
     listed = os.environ.get("IRSIM_SITE_SWITCHER", "_static/switcher.json")
     for path in sorted(html.rglob("*.html")):
         if path.relative_to(html).parts[0] in ("_static", "players"):
             continue
-        text = path.read_text(encoding="utf-8")
-        text = text.replace("<summary><span", '<summary aria-label="Pages below this one"><span')
+        name = path.relative_to(html).with_suffix("").as_posix()
+        text = lighter(path.read_text(encoding="utf-8"), searches=name == "search", about=about.get(name, ""))
+        text = with_films(text, path).replace("<summary><span", '<summary aria-label="Pages below this one"><span')
         if "://" not in listed:
             text = text.replace(f"'{listed}'", f"'{os.path.relpath(html / listed, path.parent)}'")
         path.write_text(text, encoding="utf-8")
@@ -222,7 +226,7 @@ def build(out: Path, *, previous: Path | None = None) -> None:
             target = html / path.relative_to(source)
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, target)
-    _finish(html)
+    _finish(html, pages)
     write_twins(pages, html)
     for folder, page in FOLDERS.items():
         (html / folder).mkdir(parents=True, exist_ok=True)

@@ -43,7 +43,7 @@ def address(html: Path) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def axe() -> str:
-    return (Path(os.environ["IRSIM_AXE"]) / "axe-core" / "axe.min.js").read_text(encoding="utf-8")
+    return (Path(os.environ["IRSIM_NPM"]) / "axe-core" / "axe.min.js").read_text(encoding="utf-8")
 
 
 def _page(chromium: Any, scheme: str, width: int = 1200) -> Any:
