@@ -20,7 +20,7 @@
 - ``nightly``: what is too large for every change, and therefore no part of ``full``: Blender reads what we write;
   another tenth of the bench of avoidance; more damaged files and races; all tests that rotate, of which ``slow`` runs
   those of the day. ``neupan``: the examples of NeuPAN, where ``NEUPAN_SRC`` names a checkout of NeuPAN.
-- ``docs``: the documentation site, built and checked: links, code, search, accessibility. No part of ``full``.
+- ``docs``: the documentation site, built and checked: links, code, search, accessibility, weight.
 - ``version``: writes the version, or the owner of the repository, into all files that hold it (``RELEASING.md``).
   ``release-check``: the packages of a release, built here and installed from an index on this machine.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
@@ -54,7 +54,7 @@ TOOLS = ("pandas>=2.2", "duckdb>=1.1", "mcap-ros2-support>=0.5", "nbclient>=0.10
 """What opens exported runs and notebooks in tests, and is no dependency."""
 VIDEOS = "moviepy>=2"
 """With which Gymnasium's ``RecordVideo`` writes files."""
-FULL = ("newest", "lowest", "sanitize", "evals", "records", "onnx", "cluster", "learn", "interop")
+FULL = ("newest", "lowest", "sanitize", "docs", "evals", "records", "onnx", "cluster", "learn", "interop")
 INTEROP = "3.11"
 """The Python of bridges: that of Debian 12, whose packages of ROS it imports; CARLA has a client for it, too."""
 PEERS = nox.project.load_toml(".ci/interop.toml")
