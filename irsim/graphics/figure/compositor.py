@@ -118,10 +118,13 @@ class Compositor:
             else:
                 break
             drawn += 1
-        covers = [a for a in artists[drawn:] if _covers(a) and versions[a][1] >= MIN_RESTING_SCENES]
-        for artist in covers:  # covered in the background, and again in frames in which something reaches below them
-            sheets.append(sheet := Resting())
-            sheet.add(artist, versions[artist][0])
+        covers = [artist for artist in artists[drawn:] if _covers(artist)]
+        resting = [artist for artist in covers if versions[artist][1] >= MIN_RESTING_SCENES]
+        covers = resting if covers[:1] == resting[:1] else []  # what lies on the page rests on a page that rests
+        if covers:  # covered in the background, and again in frames in which something reaches below them
+            sheets.append(page := Resting())
+            for artist in covers:
+                page.add(artist, versions[artist][0])
         ground, changed = self._background.update(self._furniture, sheets, view)
         if changed is None or self._drawn is None:
             view.pixels[...] = ground
@@ -131,11 +134,12 @@ class Compositor:
             self._note_change([*self._drawn, *changed])
         view.painter.take_boxes()
         view.unknown = False
-        painted = list[Box]()
+        painted, reached = list[Box](), False
         for artist in artists[drawn:]:
             if artist in covers and not view.unknown:
                 painted += view.painter.take_boxes()
-                if not artist.is_reached(view, painted):
+                reached = reached or (isinstance(artist, MarkArtist) and artist.is_reached(view, painted))
+                if not reached:
                     continue
             if artist in frame:
                 frame[artist].lay_over(view)
@@ -242,8 +246,8 @@ class Compositor:
         return rgba
 
 
-def _covers(artist: Artist) -> TypeGuard[MarkArtist]:
-    return isinstance(artist, MarkArtist) and artist.covers
+def _covers(artist: Artist) -> TypeGuard[MarkArtist | QuickText]:
+    return isinstance(artist, MarkArtist | QuickText) and artist.covers
 
 
 def _is_empty(artist: Artist) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -141,7 +142,8 @@ class SceneFigure:
         fit_title = self._show_title(title or "")
         if first and self.tight:
             self._enlarge_axes()
-        self.ax.apply_aspect()
+        if self._page is None:
+            self.ax.apply_aspect()
         if fit_title:
             self._fit_title()
         scale = self._points_per_metre()
@@ -178,8 +180,11 @@ class SceneFigure:
         """Draw the artists into the canvas."""
         layers: list[GridLayer | MarkLayer | FogLayer] = [*self._grids.values(), *self._marks.values()]
         layers += [] if self._fog is None or not self._fog.soft else [self._fog]
+        resting: dict[Artist, tuple[int, int]] = {
+            layer.artist: (layer.version, layer.resting_scenes) for layer in layers
+        }
         self.compositor.draw(
-            {layer.artist: (layer.version, layer.resting_scenes) for layer in layers},
+            {**resting, **self._labels.versions},
             {layer.artist: layer for layer in self._tracks.values()},
         )
 

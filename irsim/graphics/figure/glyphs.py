@@ -67,6 +67,7 @@ class QuickText(Text):
 
     Attributes:
         halo: Colour and width [pt] of an outline, or None.
+        covers: Whether the text lies on the page around the world, beyond the reach of what moves.
     """
 
     def __init__(self, glyphs: Glyphs, **kwargs: Any) -> None:
@@ -74,6 +75,7 @@ class QuickText(Text):
         self._glyphs = glyphs
         self._composed: tuple[Any, list[_Piece]] | None = None
         self.halo: tuple[Any, float] | None = None
+        self.covers = False
 
     def draw(self, renderer: Any) -> None:
         """Draw the text.

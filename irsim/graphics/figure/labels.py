@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import compress
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.text import Text
 from matplotlib.transforms import IdentityTransform, Transform
-from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.graphics.figure.canvas import rgba
@@ -28,6 +29,8 @@ _LABEL_ZORDER_STEP = 0.01
 MAX_CACHED_EXTENTS = 2000
 """Number of label sizes after which the cache of label sizes is emptied."""
 _HALO_WIDTH_PT = 2.0
+_PAGE_PARTS = ("title", "outcome", "facts", "scale", "legend")
+"""Labels on the page around the world."""
 _NAMING_PARTS = ("name", "goal")
 """Labels that stand beside the thing that they name, with a line to it if they have no room there."""
 _LEADER_COLOR = "#555555"
@@ -45,6 +48,9 @@ class LabelLayer:
         halo: Give labels a white outline, so that they can be read on dark ground, move them away from bodies, and
             connect a label that stands away from its thing with it.
         placed: Labels have been placed already and stay where they are.
+
+    Attributes:
+        versions: Text on the page around the world -> number of changes, and of scenes since the last one.
     """
 
     def __init__(self, figure: Figure, ax: Axes, glyphs: Glyphs, *, halo: bool, placed: bool = False) -> None:
@@ -56,6 +62,7 @@ class LabelLayer:
         )
         self._texts: dict[tuple[int, str], QuickText] = {}
         self._known: dict[tuple[int, str], Label] = {}
+        self.versions: dict[Artist, tuple[int, int]] = {}
         self._leaders: LineCollection | None = None
         self._extents: dict[tuple[str, float, float], Bounds] = {}
 
@@ -65,12 +72,8 @@ class LabelLayer:
         if not labels and not self._texts:
             return
         shown: dict[tuple[int, str], tuple[Label, QuickText]] = {}
-        view, data = self.ax.bbox, self.ax.transData
-        matrix, places = data.get_matrix(), np.array([label.anchor for label in labels]).reshape(-1, 2)
-        anchors = places @ matrix[:2, :2].T + matrix[:2, 2]
-        inside: NDArray[np.bool_] = (anchors >= (view.x0, view.y0)) & (anchors <= (view.x1, view.y1))
-        seen: NDArray[np.bool_] = np.all(inside, axis=1)
-        for label in compress(labels, seen.tolist()):
+        anchors, seen = self._anchors(labels)
+        for label in compress(labels, seen):
             key = label.object, label.part
             text = self._texts.get(key)
             if text is None:
@@ -81,16 +84,28 @@ class LabelLayer:
             if not text.get_visible():
                 text.set_visible(True)
             before = self._known.get(key)
-            if not self._placed or before is not label:
+            changed = not self._placed or before is not label
+            if changed:
                 self._known[key] = label
                 _change(text, before, label)
+            if label.part in _PAGE_PARTS:
+                text.covers = True
+                version, resting = self.versions.get(text, (0, 0))
+                self.versions[text] = (version + 1, 0) if changed else (version, resting + 1)
         for key, text in self._texts.items():
             if key not in shown and text.get_visible():
                 text.set_visible(False)
         if shown and not self._placed:
-            self._place(list(shown.values()), anchors[seen], scene)
+            self._place(list(shown.values()), np.array(list(compress(anchors, seen))), scene)
         elif self._leaders is not None:
             self._leaders.set_segments([])
+
+    def _anchors(self, labels: Sequence[Label]) -> tuple[list[tuple[float, float]], list[bool]]:
+        """Places of the anchors of labels [px], and which of them are in view."""
+        (xx, xy, left), (yx, yy, low), _ = self.ax.transData.get_matrix().tolist()
+        x0, y0, x1, y1 = map(float, self.ax.bbox.extents)
+        anchors = [(xx * x + xy * y + left, yx * x + yy * y + low) for x, y in (label.anchor for label in labels)]
+        return anchors, [x0 <= x <= x1 and y0 <= y <= y1 for x, y in anchors]
 
     def _place(self, shown: list[tuple[Label, QuickText]], anchors: Floats, scene: Scene) -> None:
         """Shift labels that the edge of the axes would cut or that would cover another label.

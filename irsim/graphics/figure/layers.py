@@ -82,7 +82,7 @@ class MarkArtist(PathCollection):
         fill: Makes the paths of the collection from the marks.
         items: The marks, one by one or in groups.
         scale: Points per metre, for line widths given in metres.
-        covers: Whether the marks hide what reaches out of the world, in whole pixels.
+        covers: Whether the marks are the page, which hides what reaches out of the world in whole pixels, or lie on it.
     """
 
     before: Callable[[], None] | None = None
@@ -155,7 +155,7 @@ class MarkLayer:
         joins = "round" if key[1] == PARTS.index("trajectory") else joins
         self.artist = MarkArtist([], capstyle=caps, joinstyle=joins, zorder=key[0] + ZORDER_STEP * key[1])
         self.artist.fill = self._fill
-        self.artist.covers = key[1] == PARTS.index("frame")
+        self.artist.covers = key[1] in (PARTS.index("frame"), PARTS.index("foot"))
         ax.add_collection(self.artist, autolim=False)
         self.version = self.resting_scenes = 0
         self._filled: list[Mark] = []

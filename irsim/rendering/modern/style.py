@@ -95,6 +95,7 @@ class ModernStyle:
         self._boxes: dict[Mark, Bounds] = {}
         self._marks: dict[tuple[str, int], tuple[Any, list[Mark]]] = {}
         self._groups: dict[tuple[Any, ...], Group] = {}
+        self._things: dict[int, Thing] = {}
         self._stars: tuple[Any, list[Mark]] = (None, [])
         self._name = name_of(simulation)
 
@@ -113,9 +114,9 @@ class ModernStyle:
         events = read_events(simulation, self.world) if request.events is None else request.events
         things, crowd = read_things(
             scene, simulation, self.world, builder, layout, theme,
-            events=events, overrides=request.overrides, picked=request.picked,
+            events=events, overrides=request.overrides, picked=request.picked, before=self._things,
         )  # fmt: skip
-        by_number = {thing.number: thing for thing in things}
+        by_number = self._things = {thing.number: thing for thing in things}
         marks, labels = list(self._ground), list[Label]()
         grids = self._add_maps(scene, marks)
         if request.zones:
@@ -202,6 +203,7 @@ class ModernStyle:
         self._boxes.clear()
         self._marks.clear()
         self._groups.clear()
+        self._things = {}
         self._stars = (None, [])
         self._head = None
         self._maps.clear()

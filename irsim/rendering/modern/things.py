@@ -124,6 +124,7 @@ def read_things(
     events: Sequence[Event],
     overrides: Mapping[str, Any],
     picked: Collection[str] = (),
+    before: Mapping[int, Thing] | None = None,
 ) -> tuple[list[Thing], Crowd]:
     """Read the objects that are in a scene.
 
@@ -137,6 +138,7 @@ def read_things(
         events: Events of the episode so far.
         overrides: Plot keys that the caller sets.
         picked: Names of the objects that stand out.
+        before: The things of the last picture with this layout; those that stand, unchanged, serve again.
     """
     marks = {mark.object: mark for mark in scene.marks if mark.part == "body"}
     images = {picture.object for picture in scene.pictures}
@@ -153,9 +155,14 @@ def read_things(
     x0, x1, y0, y1 = layout.world
     things = list[Thing]()
     for view, (x, y, heading), appeared, arrived, stopped in rows:
+        number, record, mark = view.id, view.record, marks.get(view.id)
+        known = None if before is None or mark is None else before.get(number)
+        if known is not None and known.kind == "still" and known.mark is mark and known.overrides == overrides:
+            known.picked = view.name in picked
+            things.append(known)
+            continue
         if math.isnan(x) or appeared < 0:
             x, y, heading = simulation.state.initial_state(view.row)[:3].tolist()
-        number, record = view.id, view.record
         kind, hit, body = kind_of(record), hits.get(view.name), builder.body(view)
         look = kind, colors[number]
         if look not in shades:
@@ -169,7 +176,7 @@ def read_things(
                 shades=shades[look],
                 body=body,
                 is_round=body.kind == "circle" and body.middle == (0.0, 0.0),
-                mark=marks.get(number),
+                mark=mark,
                 drawn_at=(x, y, heading),
                 course=builder.heading_of(view, (x, y, heading)),
                 glyph_radius=reach,
