@@ -14,23 +14,44 @@ Raster& raster_for(PixelBox clip) {
   return raster;
 }
 
+constexpr double kBeside = 1.0;  ///< Pixels beside a shape that its raster has, too.
+
+/// How far a stroke reaches beyond its line [px]; the tips of miters are the farthest.
+double reach_of(const LineStyle& style) { return style.width / 2 * std::max(1.0, style.width) + kBeside; }
+
 }  // namespace
 
 void Painter::paint(Raster& raster, const Pixels& pixels, Ink ink) {
-  const PixelBox box = raster.touched();
-  if (is_empty(box)) return raster.sweep([](int, int, float) {});
+  raster.add_touched(boxes_);
   const float opacity = static_cast<float>(ink.alpha);
   raster.sweep([pixels, ink, opacity](int y, int x, float share) {
     const int alpha = static_cast<int>(share * opacity + 0.5f);
     lay_over(pixels.row(y) + kChannels * x, ink, alpha);
   });
-  boxes_.push_back(box);
 }
 
 void Painter::image(const Pixels& pixels, const Pixels& above, int left, int top) {
   lay_image(pixels, above, left, top);
   const PixelBox whole{0, 0, pixels.width, pixels.height};
   boxes_.push_back(common(whole, {left, top, left + above.width, top + above.height}));
+}
+
+Raster& Painter::raster_around(const Vec2* corners, std::size_t count, double margin) const {
+  Vec2 low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 p = corners[i];
+    if (!(std::isfinite(p.x) && std::isfinite(p.y))) return raster_for(clip_);
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  const auto pixel = [](double at, int from, int to) {
+    return static_cast<int>(std::min(std::max(at, static_cast<double>(from)), static_cast<double>(to)));
+  };
+  const int left = pixel(std::floor(low.x - margin), clip_.left, clip_.right);
+  const int top = pixel(std::floor(low.y - margin), clip_.top, clip_.bottom);
+  const int right = pixel(std::ceil(high.x + margin), left, clip_.right);
+  const int bottom = pixel(std::ceil(high.y + margin), top, clip_.bottom);
+  return raster_for({left, top, right, bottom});
 }
 
 std::vector<Vec2> Painter::seen(const Vec2* points, std::size_t count) const {
@@ -41,9 +62,9 @@ std::vector<Vec2> Painter::seen(const Vec2* points, std::size_t count) const {
 }
 
 void Painter::circle(const Pixels& pixels, Vec2 center, double radius, Ink fill, Ink edge, double width) {
-  Raster& raster = raster_for(clip_);
   const Vec2 middle = view_(center);
   const double reach = radius * scale();
+  Raster& raster = raster_around(&middle, 1, reach + std::max(width, 0.0) + kBeside);
   if (fill.alpha > 0) {
     add_disc(raster, middle, reach);
     paint(raster, pixels, fill);
@@ -56,10 +77,10 @@ void Painter::circle(const Pixels& pixels, Vec2 center, double radius, Ink fill,
 
 void Painter::polygon(const Pixels& pixels, const Vec2* points, std::size_t count, Ink fill, Ink edge,
                       const LineStyle& style) {
-  Raster& raster = raster_for(clip_);
   std::vector<Vec2> corners = seen(points, count);
   const bool stroked = edge.alpha > 0 && style.width > 0.0;
   snap(corners, true, stroked ? style.width : 0.0);
+  Raster& raster = raster_around(corners.data(), count, stroked ? reach_of(style) : kBeside);
   if (fill.alpha > 0) {
     raster.outline(corners.data(), corners.size());
     paint(raster, pixels, fill);
@@ -72,8 +93,8 @@ void Painter::polygon(const Pixels& pixels, const Vec2* points, std::size_t coun
 
 void Painter::glow(const Pixels& pixels, const Vec2* points, std::size_t count, Vec2 origin, double reach, Ink fill) {
   if (fill.alpha == 0 || !(reach > 0.0)) return;
-  Raster& raster = raster_for(clip_);
   const std::vector<Vec2> corners = seen(points, count);
+  Raster& raster = raster_around(corners.data(), count, kBeside);
   raster.outline(corners.data(), corners.size());
   const PixelBox box = raster.touched();
   const Vec2 middle = view_(origin);
@@ -88,9 +109,9 @@ void Painter::glow(const Pixels& pixels, const Vec2* points, std::size_t count, 
 
 void Painter::line(const Pixels& pixels, const Vec2* points, std::size_t count, Ink edge, const LineStyle& style) {
   if (edge.alpha == 0 || !(style.width > 0.0)) return;
-  Raster& raster = raster_for(clip_);
   std::vector<Vec2> corners = seen(points, count);
   snap(corners, false, style.width);
+  Raster& raster = raster_around(corners.data(), count, reach_of(style));
   if (style.dashes.empty()) {
     add_stroke(raster, corners, false, style);
   } else {

@@ -62,6 +62,8 @@ class Painter {
                      const LineStyle& style, bool snapped);
 
  private:
+  /// The raster of this thread, only as large as what these corners and a margin need, so that it stays in the cache.
+  Raster& raster_around(const Vec2* corners, std::size_t count, double margin) const;
   std::vector<Vec2> seen(const Vec2* points, std::size_t count) const;
   double scale() const { return std::sqrt(std::fabs(view_.xx * view_.yy - view_.xy * view_.yx)); }
   void paint(Raster& raster, const Pixels& pixels, Ink ink);

@@ -36,14 +36,22 @@ void Raster::outline(const Vec2* points, std::size_t count) {
   if (count > 1) edge(points[count - 1], points[0]);
 }
 
-PixelBox Raster::touched() const {
-  PixelBox box{box_.right, first_, box_.left, last_ + 1};
-  for (int y = first_; y <= last_; ++y) {
+PixelBox Raster::touched(int first, int last) const {
+  PixelBox box{box_.right, first, box_.left, last + 1};
+  for (int y = first; y <= last; ++y) {
     const Row& row = rows_[y - box_.top];
     box.left = std::min(box.left, box_.left + row.from);
     box.right = std::max(box.right, std::min(box_.right, box_.left + row.to + 1));
   }
   return box;
+}
+
+void Raster::add_touched(std::vector<PixelBox>& boxes) const {
+  constexpr int kBand = 32;  // rows; one box around a long oblique line would be mostly empty
+  for (int first = first_; first <= last_; first += kBand) {
+    const PixelBox box = touched(first, std::min(first + kBand - 1, last_));
+    if (!is_empty(box)) boxes.push_back(box);
+  }
 }
 
 /// Add an edge that may reach out of the box.

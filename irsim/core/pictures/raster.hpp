@@ -65,8 +65,11 @@ class Raster {
     return true;
   }
 
-  /// The rows that have been touched; empty if `bottom <= top`.
-  PixelBox touched() const;
+  /// The part that has been touched; empty if `bottom <= top`.
+  PixelBox touched() const { return touched(first_, last_); }
+
+  /// Append boxes around what has been touched, one for each band of rows.
+  void add_touched(std::vector<PixelBox>& boxes) const;
 
  private:
   static constexpr float kLeastShare = 1.0f / 512.0f;
@@ -93,6 +96,7 @@ class Raster {
     for (int x = std::max(row.from, last + 1); x <= row.to; ++x) deltas[x] = 0.0f;
   }
 
+  PixelBox touched(int first, int last) const;
   bool read_convex(const Vec2* points, std::size_t count);
   void cut_edge(Vec2 from, Vec2 to);
   void inner_edge(double x0, double y0, double x1, double y1);

@@ -6,7 +6,7 @@ namespace irsim {
 namespace {
 
 constexpr double kSagitta = 0.02;           // distance of a circle from the polygon that stands for it [px]
-constexpr int kFewestCorners = 16;          // of such a polygon
+constexpr int kFewestCorners = 12;          // of such a polygon
 constexpr double kOneStep = 0.99;           // of a step around a circle; a smaller turn has one edge
 constexpr double kShortest = 1e-9;          // shorter segments are left out [px]
 constexpr double kAlignedPx = 1e-4;         // deviation up to which a segment counts as horizontal or vertical

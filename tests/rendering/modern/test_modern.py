@@ -244,8 +244,8 @@ def test_a_frame_of_two_hundred_robots_takes_less_than_150_ms(opened: Opened) ->
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["crossing", "fmcw-watch"])
-def test_a_frame_of_a_busy_scene_takes_hardly_longer_than_a_classic_one(opened: Opened, name: str) -> None:
+@pytest.mark.parametrize("name", SIX)
+def test_a_frame_takes_hardly_longer_than_a_classic_one(opened: Opened, name: str) -> None:
     plots = [opened(name), opened(name)]
     plots[1]._env_plot.set_style("classic")
     times: list[list[float]] = [[], []]
