@@ -106,7 +106,7 @@ def _against(ax: Axes, result: BenchmarkResult, scenes: Sequence[tuple[Any, str]
     ax.set_xlabel(", ".join(scenes[0][0]))
     ax.set_ylabel("success")
     ax.set_ylim(-0.03, 1.03)
-    ax.legend(frameon=False)
+    _name_policies(ax)
 
 
 def _distribution(ax: Axes, labels: dict[str, str], episodes: Sequence[EpisodeRow], key: str, heading: str) -> None:
@@ -155,9 +155,15 @@ def _paired(ax: Axes, result: BenchmarkResult) -> None:
             ax.plot([mean], [y], marker="o", markersize=7, color=color, gid=tip)
     ax.axvline(0, color="grey", linewidth=0.8)
     ax.set_yticks(range(len(scenes)), scenes, fontsize=7)
-    ax.invert_yaxis()
+    ax.set_ylim(len(scenes) - 0.5, -0.5)  # the first one on top
     ax.set_xlabel("difference of success")
-    ax.legend(frameon=False)
+    _name_policies(ax)
+
+
+def _name_policies(ax: Axes) -> None:
+    """The names of the policies above the chart, where they hide nothing."""
+    figure: Any = ax.figure
+    figure.legend(loc="outside upper center", ncols=4, frameon=False)
 
 
 def _difference(row: BenchmarkRow) -> tuple[float, float, float]:
