@@ -15,7 +15,7 @@ constexpr double kMinLength = 1e-6;   // shorter segments are skipped [m]
 constexpr double kThinAngle = 0.01;   // replaces an angle of zero in the apex of hrvo [rad]
 constexpr double kWallHorizon = 1.0;  // walls that would be reached sooner block a velocity [s]
 constexpr double kSameSample = 1e-9;  // two squared distances of samples differ by more [m^2/s^2]
-constexpr double kMargin = 1e-6;      // of the tangents of walls, so that rounding does not hide a wall beside one [m]
+constexpr double kWallMargin = 1e-6;  // of the tangents of walls, so that rounding does not hide a wall beside one [m]
 constexpr double kSlowest = 1e-3;     // slower velocities near walls are rounding errors [m/s]
 constexpr double kTieMemory = 1.0;    // a tie lasts that long, while the objects are almost mirrored [s]
 constexpr double kAlmostTied = 0.05;  // largest difference of their directions to the goals then
@@ -95,7 +95,7 @@ bool look_around(const RvoOptions& options, const Decision& decision, const Ego&
   const double goal = norm(decision.state.destination(ego.row).position() - ego.position);
   const bool wants = ego.route == nullptr && squared(ego.desired) > 0.0;
   const double look = wants ? std::min(goal, options.neighbor_threshold) : 0.0;
-  add_walls(decision, ego.id, ego.position, room, reach, look, kMargin, ego.route == nullptr, walls);
+  add_walls(decision, ego.id, ego.position, room, reach, look, kWallMargin, ego.route == nullptr, walls);
   return meets;
 }
 

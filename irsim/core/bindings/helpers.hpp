@@ -9,7 +9,6 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
-#include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
 #include <cstring>
@@ -17,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "bindings/variants.hpp"
 #include "fields.hpp"
 
 namespace irsim {
@@ -39,92 +39,86 @@ nb::object own(std::vector<T> values, std::initializer_list<std::size_t> shape) 
   return view<T>(std::shared_ptr<T>(kept, kept->data()), shape);
 }
 
-template <class Target, class Owner, class Value>
-void read_field(Target& owner, const Field<Owner, Value>& field, nb::handle value) {
-  owner.*(field.member) = nb::cast<Value>(value);
-}
+/// One field of a bound struct. It knows the type of the value, but not of the struct: what nanobind compiles for each
+/// type takes seconds, so all structs share the functions for a type of value.
+struct BoundField {
+  const char* name;
+  std::size_t offset;  // in the struct [bytes]
+  nb::object (*show)(const BoundField& field, const void* value);
+  void (*read)(const BoundField& field, void* value, nb::handle given);
+  std::vector<const char*> words;  // of a choice
+};
+
+/// A bound struct: how its memory becomes an object, and its fields.
+struct BoundStruct {
+  nb::handle type;
+  void (*construct)(void* memory);
+  std::vector<BoundField> fields;
+};
+
 /// The index of a word among the choices of a field.
-template <class Choices>
-std::size_t index_of(const Choices& field, const std::string& word) {
-  for (std::size_t i = 0; i < field.words.size(); ++i) {
-    if (word == field.words[i]) return i;
-  }
-  throw nb::value_error((std::string(field.name) + ": '" + word + "' is not one of the choices").c_str());
+std::size_t index_of(const BoundField& field, const std::string& word);
+
+template <class Value>
+void read_value(const BoundField&, void* value, nb::handle given) {
+  *static_cast<Value*>(value) = nb::cast<Value>(given);
 }
-template <class Target, class Owner, class Enum, std::size_t N>
-void read_field(Target& owner, const Choice<Owner, Enum, N>& field, nb::handle value) {
-  owner.*(field.member) = static_cast<Enum>(index_of(field, nb::cast<std::string>(value)));
+template <class Value>
+nb::object show_value(const BoundField&, const void* value) {
+  return nb::cast(*static_cast<const Value*>(value));
 }
-template <class Target, class Owner, class Enum, std::size_t N>
-void read_field(Target& owner, const Choices<Owner, Enum, N>& field, nb::handle value) {
-  std::vector<Enum>& list = owner.*(field.member);
+template <class Enum>
+void read_choice(const BoundField& field, void* value, nb::handle given) {
+  *static_cast<Enum*>(value) = static_cast<Enum>(index_of(field, nb::cast<std::string>(given)));
+}
+template <class Enum>
+nb::object show_choice(const BoundField& field, const void* value) {
+  return nb::cast(field.words[static_cast<std::size_t>(*static_cast<const Enum*>(value))]);
+}
+template <class Enum>
+void read_choices(const BoundField& field, void* value, nb::handle given) {
+  auto& list = *static_cast<std::vector<Enum>*>(value);
   list.clear();
-  for (const std::string& word : nb::cast<std::vector<std::string>>(value)) {
+  for (const std::string& word : nb::cast<std::vector<std::string>>(given)) {
     list.push_back(static_cast<Enum>(index_of(field, word)));
   }
 }
-
-template <class Target, class Owner, class Value>
-nb::object show_field(const Target& owner, const Field<Owner, Value>& field) {
-  return nb::cast(owner.*(field.member));
-}
-template <class Target, class Owner, class Enum, std::size_t N>
-nb::object show_field(const Target& owner, const Choice<Owner, Enum, N>& field) {
-  return nb::cast(field.words[static_cast<std::size_t>(owner.*(field.member))]);
-}
-
-template <class Target, class Owner, class Enum, std::size_t N>
-nb::object show_field(const Target& owner, const Choices<Owner, Enum, N>& field) {
+template <class Enum>
+nb::object show_choices(const BoundField& field, const void* value) {
   nb::list words;
-  for (const Enum one : owner.*(field.member)) words.append(field.words[static_cast<std::size_t>(one)]);
+  for (const Enum one : *static_cast<const std::vector<Enum>*>(value))
+    words.append(field.words[static_cast<std::size_t>(one)]);
   return words;
 }
 
-/// Set the field at an index of the list.
-template <class T>
-void read_at(T& target, std::size_t index, nb::handle value) {
-  T::fields([&](const auto&... field) {
-    [[maybe_unused]] std::size_t at = 0;
-    ((at++ == index ? read_field(target, field, value) : void()), ...);
-  });
+template <class Owner, class Value>
+BoundField bound_field(const Field<Owner, Value>& field, std::size_t offset) {
+  return {field.name, offset, &show_value<Value>, &read_value<Value>, {}};
+}
+template <class Owner, class Enum, std::size_t N>
+BoundField bound_field(const Choice<Owner, Enum, N>& field, std::size_t offset) {
+  return {field.name, offset, &show_choice<Enum>, &read_choice<Enum>, {field.words.begin(), field.words.end()}};
+}
+template <class Owner, class Enum, std::size_t N>
+BoundField bound_field(const Choices<Owner, Enum, N>& field, std::size_t offset) {
+  return {field.name, offset, &show_choices<Enum>, &read_choices<Enum>, {field.words.begin(), field.words.end()}};
 }
 
-/// The field at an index of the list.
-template <class T>
-nb::object show_at(const T& source, std::size_t index) {
-  nb::object shown;
-  T::fields([&](const auto&... field) {
-    [[maybe_unused]] std::size_t at = 0;
-    ((at++ == index ? void(shown = show_field(source, field)) : void()), ...);
-  });
-  return shown;
-}
+/// Give a class the keyword constructor, the tuple `fields` and the read-only attributes of a struct.
+void bind_struct(nb::object type, BoundStruct bound);
 
-/// Raise TypeError unless the keyword arguments name each of `names` and nothing else.
-void check_names(const nb::kwargs& given, const std::vector<const char*>& names);
-
-/// Bind a struct that has `fields`, with a keyword constructor, the tuple `fields` and read-only attributes.
+/// Bind a struct that has `fields`.
 template <class T>
 void bind_fields(nb::module_& m, const char* name) {
-  const auto names =
-      T::fields([](const auto&... field) { return std::vector<const char*>{static_cast<const char*>(field.name)...}; });
-  nb::class_<T> bound(m, name);
-  // One type of getter per struct: what nanobind compiles for each type costs more than the search for the index.
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    bound.def_prop_ro(names[i], [i](const T& self) { return show_at(self, i); });
-  }
-  bound.attr("fields") = nb::tuple(nb::cast(names));
-  bound.def("__init__", [names](T* self, nb::kwargs given) {
-    new (self) T();
-    check_names(given, names);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      try {
-        read_at(*self, i, given[names[i]]);
-      } catch (const nb::cast_error&) {
-        throw nb::type_error((std::string("argument of the wrong type: ") + names[i]).c_str());
-      }
-    }
+  BoundStruct bound{nb::handle(), [](void* memory) { new (memory) T(); }, {}};
+  const T any{};
+  T::fields([&](const auto&... field) {
+    const auto* start = reinterpret_cast<const char*>(&any);
+    (bound.fields.push_back(
+         bound_field(field, static_cast<std::size_t>(reinterpret_cast<const char*>(&(any.*(field.member))) - start))),
+     ...);
   });
+  bind_struct(nb::class_<T>(m, name), std::move(bound));
 }
 
 void bind_features(nb::module_& m);

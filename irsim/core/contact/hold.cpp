@@ -14,7 +14,7 @@ constexpr int kRounds = 6;                     // of holding and pushing apart, 
 constexpr int kRoundsOfStep = 256;             // the same of all parts together, after which bodies are only held
 constexpr int kMaxPairsSolved = 20000;         // in all rounds together; larger crowds are only held
 constexpr std::size_t kMaxPairsHeld = 100000;  // in larger crowds bodies are only held at what cannot be pushed
-constexpr double kApart = 1e-6;                // gap that is left where a body is held [m]
+constexpr double kHeldGap = 1e-6;              // gap that is left where a body is held [m]
 
 bool is_before(const Contact& p, const Contact& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; }
 
@@ -109,7 +109,7 @@ class Holder {
     Vec2 where;
     const double when = first_contact(one, other, 0.0, 1.0, scene_.swept, where);
     if (!(when <= 1.0)) return kInfinity;
-    const double before = kApart / (way_of(a, stride(a)) + way_of(b, stride(b)));
+    const double before = kHeldGap / (way_of(a, stride(a)) + way_of(b, stride(b)));
     if (when > 2.0 * before) return when - before;
     // They overlap deeply where they begin. They may part, but not on the other side of a wall.
     const int wall = world_.is_static[a] ? a : b, body = wall == a ? b : a;

@@ -6,7 +6,7 @@ namespace irsim {
 namespace {
 
 constexpr double kEvenSpeed = 0.3;  // speed added to the speeds of both bodies, so that each keeps some room [m/s]
-constexpr int kHalvings = 6;        // of a part of a way whose chord does not tell whether it is free
+constexpr int kWayHalvings = 6;     // of a part of a way whose chord does not tell whether it is free
 
 bool crosses(const Border& border, const CellBody& body, const Manoeuvre& way) {
   const Hull& hull = body.hull;
@@ -67,7 +67,7 @@ class Passage {
       const Separation after = look(to, 1);
       room = std::min(room, after.gap - fixture_.gap);
       if (room < 0.0) return room;
-      if (fixture_.gap > 0.0 && !is_free(from, before_.axis, to, after.axis, bulge_, kHalvings))
+      if (fixture_.gap > 0.0 && !is_free(from, before_.axis, to, after.axis, bulge_, kWayHalvings))
         return -bulge_ - fixture_.gap;
       before_ = after, known = true;
       left = after.gap - fixture_.gap - bulge_;

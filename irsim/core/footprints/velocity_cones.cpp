@@ -3,7 +3,7 @@
 namespace irsim {
 namespace {
 
-constexpr double kTouching = 1e-6;  // smallest gap for which bodies have tangents [m]
+constexpr double kSmallestGap = 1e-6;  // smallest gap for which bodies have tangents [m]
 
 /// The direction of a tangent to a disc at p, to its left (`side` 1) or right (-1).
 Vec2 tangent(Vec2 p, double radius, double side) {
@@ -24,10 +24,10 @@ Separation cone_of(const Hull& a, const Hull& b, double margin, bool mirrored, s
     if (gap > 0.0) faces.push_back({axis * sign, gap});
   });
   const double kept = std::min(margin, 0.5 * std::max(0.0, apart.gap)), round = a.round + b.round + kept;
-  for (std::size_t k = cone.first; k < faces.size(); ++k) faces[k].gap = std::max(faces[k].gap - kept, kTouching);
+  for (std::size_t k = cone.first; k < faces.size(); ++k) faces[k].gap = std::max(faces[k].gap - kept, kSmallestGap);
   cone.left = {apart.axis.y, -apart.axis.x}, cone.right = cone.left * -1.0;  // of bodies that touch: half a plane
-  if (apart.gap < kTouching) {
-    if (cone.first == static_cast<int>(faces.size())) faces.push_back({apart.axis, kTouching});
+  if (apart.gap < kSmallestGap) {
+    if (cone.first == static_cast<int>(faces.size())) faces.push_back({apart.axis, kSmallestGap});
     cone.count = static_cast<int>(faces.size()) - cone.first;
     return apart;
   }

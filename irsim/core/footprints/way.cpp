@@ -7,21 +7,21 @@
 namespace irsim {
 namespace {
 
-constexpr double kLane = 0.02;           // clearance of a straight lane on either side [m]
-constexpr double kSearchAgain = 3.0;     // time after which a way that is not open is searched again [s]
-constexpr double kGoOn = 1.0;            // the same at the end of one that does not lead to the goal [s]
-constexpr double kAtEnd = 0.5;           // distance from this end [m]
-constexpr double kTight = 0.06;          // overlap with a lane that is tried if there is no other way [m]
-constexpr double kHorizon = 8.0;         // ways are planned no farther ahead [m]
-constexpr double kInside = 0.02;         // depth within `goal_threshold` to which a way leads [m]
-constexpr double kCornerReached = 0.1;   // distance at which a corner of a way is left behind [m]
-constexpr double kProgress = 0.3;        // an object that stays within this distance makes no progress [m]
-constexpr double kPatience = 1.2;        // time without progress, besides that for gathering speed, after which it
-                                         // tries other directions [s]
-constexpr double kTrial = 1.0;           // time for which it tries one, and then its own again [s]
-constexpr double kLeastTrial = kPi / 3;  // smallest angle of such a direction from its own [rad]
-constexpr double kMakeRoom = 0.3;        // gap at which an arrived object makes room for the rest [m]
-constexpr double kStanding = 0.1;        // others that are slower are in the way of an object without progress [m/s]
+constexpr double kLane = 0.02;             // clearance of a straight lane on either side [m]
+constexpr double kSearchAgain = 3.0;       // time after which a way that is not open is searched again [s]
+constexpr double kGoOn = 1.0;              // the same at the end of one that does not lead to the goal [s]
+constexpr double kAtEnd = 0.5;             // distance from this end [m]
+constexpr double kTight = 0.06;            // overlap with a lane that is tried if there is no other way [m]
+constexpr double kHorizon = 8.0;           // ways are planned no farther ahead [m]
+constexpr double kInside = 0.02;           // depth within `goal_threshold` to which a way leads [m]
+constexpr double kWayCornerReached = 0.1;  // distance at which a corner of a way is left behind [m]
+constexpr double kStayingDistance = 0.3;   // an object that stays within this distance makes no progress [m]
+constexpr double kStayingTime = 1.2;       // time without progress, besides that for gathering speed, after which it
+                                           // tries other directions [s]
+constexpr double kTrial = 1.0;             // time for which it tries one, and then its own again [s]
+constexpr double kLeastTrial = kPi / 3;    // smallest angle of such a direction from its own [rad]
+constexpr double kMakeRoom = 0.3;          // gap at which an arrived object makes room for the rest [m]
+constexpr double kStanding = 0.1;          // others that are slower are in the way of an object without progress [m/s]
 
 /// Half the width of the lane in which a body moves [m].
 double half_lane(const FootprintSelf& self) {
@@ -95,8 +95,9 @@ Vec2 next_point(FootprintSelf& self, Detour& detour, Vec2 goal, std::int64_t now
   if (far) detour.leads = false;
   if (detour.points.empty()) return goal;
   const std::size_t last = detour.points.size() - 1;
-  while (detour.next < last && (squared(detour.points[detour.next] - self.position) < kCornerReached * kCornerReached ||
-                                is_open(self.position, detour.points[detour.next + 1], lane.radius, blockers))) {
+  while (detour.next < last &&
+         (squared(detour.points[detour.next] - self.position) < kWayCornerReached * kWayCornerReached ||
+          is_open(self.position, detour.points[detour.next + 1], lane.radius, blockers))) {
     ++detour.next;
   }
   return detour.points[detour.next];
@@ -150,9 +151,9 @@ Vec2 wanted_velocity(FootprintSelf& self) {
   if (detour.step < 0 || squared(detour.goal - goal) > 0.0)
     detour.points.clear(), detour.planned = -1, detour.goal = goal, detour.wide = false;
   detour.step = now;
-  if (detour.anchored < 0 || squared(detour.anchor - self.position) > kProgress * kProgress)
+  if (detour.anchored < 0 || squared(detour.anchor - self.position) > kStayingDistance * kStayingDistance)
     detour.anchor = self.position, detour.anchored = now;
-  const double waited = (now - detour.anchored) * dt - kPatience - time_to_speed(self);
+  const double waited = (now - detour.anchored) * dt - kStayingTime - time_to_speed(self);
   if (waited >= 0.0) add_standing(self);
   if (waited >= 0.0 && !detour.wide) detour.wide = true, detour.planned = -1;
   const Vec2 way = next_point(self, detour, goal, now) - self.position;

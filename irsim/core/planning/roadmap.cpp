@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMaxDrawsPerPoint = 100;  // largest number of draws per free point
 
-struct Edge {
+struct Connection {
   int to;
   double length;
 };
@@ -33,7 +33,7 @@ Plan search_roadmap(const Problem& problem, int samples, int neighbours, double 
   points.push_back(problem.start);
   points.push_back(problem.goal);
   const int count = static_cast<int>(points.size()), start = count - 2, goal = count - 1;
-  std::vector<std::vector<Edge>> edges(points.size());
+  std::vector<std::vector<Connection>> edges(points.size());
   std::vector<std::pair<double, int>> near;
   for (int i = 0; i < count; ++i) {
     near.clear();
@@ -46,7 +46,7 @@ Plan search_roadmap(const Problem& problem, int samples, int neighbours, double 
     for (const auto& [length, k] : near) {
       if (joined >= neighbours) break;
       const auto known = [&](int from, int to) {
-        return std::any_of(edges[from].begin(), edges[from].end(), [&](const Edge& e) { return e.to == to; });
+        return std::any_of(edges[from].begin(), edges[from].end(), [&](const Connection& e) { return e.to == to; });
       };
       if (!known(i, k)) {
         if (!problem.space.clear(points[i], points[k])) continue;
@@ -69,7 +69,7 @@ Plan search_roadmap(const Problem& problem, int samples, int neighbours, double 
     heap.pop_back();
     if (entry.key > cost[entry.node]) continue;
     if (entry.node == goal) break;
-    for (const Edge& edge : edges[entry.node]) {
+    for (const Connection& edge : edges[entry.node]) {
       const double through = entry.key + edge.length;
       if (!(through < cost[edge.to])) continue;
       cost[edge.to] = through;

@@ -9,7 +9,7 @@ constexpr double kMinTime = 1e-4;           // smallest time to a collision in t
 constexpr double kMinRelativeSpeed = 1e-7;  // added to relative speeds [m/s]
 constexpr double kLeastShare = 0.125;       // of the distance within which walls are passed, before the last resort
 constexpr double kLeastProgress = 0.01;     // share of the desired velocity that leads past walls
-constexpr double kParallel = 1e-9;          // slower approaches count as parallel motion [m/s]
+constexpr double kParallelSpeed = 1e-9;     // slower approaches count as parallel motion [m/s]
 
 /// The best sample so far: the one of smallest cost, then the first in order.
 struct Best {
@@ -243,7 +243,7 @@ class Penalties {
 double Stretch::time(Vec2 w) const {
   const double offset = cross(along, a);  // positive if the ego is on the right of the line
   const double towards = offset > 0.0 ? cross(along, w) : -cross(along, w);
-  if (!(towards > kParallel)) return kNever;
+  if (!(towards > kParallelSpeed)) return kNever;
   const double t = std::max((std::fabs(offset) - radius) / towards, 0.0);
   const double at = dot(w * t - a, along);
   return at >= -radius && at <= length + radius ? t : kNever;

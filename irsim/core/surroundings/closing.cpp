@@ -9,9 +9,9 @@
 namespace irsim {
 namespace {
 
-constexpr double kKept = 0.01;       // part of a gap that is never taken [m]
-constexpr double kRounding = 1e-12;  // smaller differences of speeds are rounding errors [m/s]
-constexpr double kAlong = 1e-9;      // a smaller sine of the angle to a tangent is a rounding error
+constexpr double kKept = 0.01;            // part of a gap that is never taken [m]
+constexpr double kSpeedRounding = 1e-12;  // smaller differences of speeds are rounding errors [m/s]
+constexpr double kAlong = 1e-9;           // a smaller sine of the angle to a tangent is a rounding error
 
 bool is_round(const Decision& decision, int object) {
   const Shapes& shapes = *decision.state.scenes[decision.w()].shapes;
@@ -41,10 +41,10 @@ Vec2 slide_along(const std::vector<Nearby>& nearby, const World& world, Vec2 vel
   if (wanted > fastest) velocity = velocity * (fastest / wanted);
   for (std::size_t k = 0; k < nearby.size(); ++k) {
     const Nearby* worst = nullptr;
-    double most = kRounding;
+    double most = kSpeedRounding;
     for (const Nearby& other : nearby) {
       const double excess = dot(velocity, other.towards) - kClosingShare * other.gap / world.step_time;
-      const bool equal = worst != nullptr && std::fabs(excess - most) <= kRounding;
+      const bool equal = worst != nullptr && std::fabs(excess - most) <= kSpeedRounding;
       if (equal ? cross(velocity, other.towards) > cross(velocity, worst->towards) : excess > most) {
         worst = &other, most = excess;
       }
@@ -81,7 +81,7 @@ void keep_gaps(const Decision& decision, const Ego& ego, bool slides, Intent& in
     const Vec2 wanted = intent.velocity;
     intent.velocity = slide_along(nearby, world, wanted, fastest);
     // Where nothing is left of a gap, a heading that is nearly along it leads nowhere, however small the error.
-    if (std::fabs(cross(wanted, intent.velocity)) > kRounding) intent.turning.tolerance = 0.0;
+    if (std::fabs(cross(wanted, intent.velocity)) > kSpeedRounding) intent.turning.tolerance = 0.0;
   }
   if (travel > 1) return;
   const double most = largest_speed(nearby, world, decision.state.heading(ego.row), top[1]);

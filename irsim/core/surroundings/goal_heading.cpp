@@ -8,7 +8,7 @@ namespace irsim {
 namespace {
 
 constexpr double kRestingTurn = 1e-9;      // an object that turns by less in a step counts as resting [rad]
-constexpr double kRestingSpeed = 0.05;     // slower objects run into nothing [m/s]
+constexpr double kHarmlessSpeed = 0.05;    // slower objects run into nothing [m/s]
 constexpr double kCollisionHorizon = 2.0;  // collisions that would come later are not avoided yet [s]
 
 /// Whether another object that moves on as now runs into this one within the horizon if it stands.
@@ -23,7 +23,7 @@ bool is_run_into(const World& world, const State& state, int row, int object) {
     if (i == object || world.unobstructed[i] || state.absent(other)) return false;
     const Vec2 velocity{state.twist[other][0], state.twist[other][1]};
     const double speed2 = squared(velocity);
-    if (speed2 < kRestingSpeed * kRestingSpeed) return false;
+    if (speed2 < kHarmlessSpeed * kHarmlessSpeed) return false;
     const Vec2 gap = here - centre_of(other, i);
     const double closing = dot(gap, velocity), reach = shapes.radius[i] + shapes.radius[object];
     const double apart = squared(gap) - reach * reach, root = closing * closing - speed2 * apart;

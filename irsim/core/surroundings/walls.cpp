@@ -10,7 +10,7 @@
 namespace irsim {
 namespace {
 
-constexpr double kCell = 4.0;                // cell size of the grid of walls [m]
+constexpr double kWallCell = 4.0;            // cell size of the grid of walls [m]
 constexpr int kCorners = 16;                 // corners of the polygon that stands for a circle of a compound
 constexpr double kClosed = 1e-9;             // a line whose ends are this close is closed [m]
 constexpr double kBeyond = 1.0 + 1e-9;       // so that rounding does not decide
@@ -127,7 +127,7 @@ void Walls::add_ring(const Vec2* corners, int count, Inside inside, int object) 
 }
 
 void Walls::build() {
-  grid.clear(kCell);
+  grid.clear(kWallCell);
   for (std::size_t k = 0; k < list.size(); ++k) {
     Box box;
     box.include(list[k].a);
