@@ -10,7 +10,7 @@ from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import Pose
 from irsim.graphics.scene.scene import NO_CIRCLE, Group, Look
 
-__all__ = ["GroupBuilder", "boxes_of", "circles", "kept", "placed_areas"]
+__all__ = ["Outlines", "boxes_of", "circles", "kept", "placed_areas"]
 
 
 def boxes_of(group: Group) -> Floats:
@@ -85,39 +85,35 @@ def circles(
     return [Group(part, zorder, True, numbers, places, np.stack([ends[:-1], ends[1:]], axis=1), radii, looks)]
 
 
-class GroupBuilder:
-    """Collects circles and areas of one part and layer."""
+class Outlines:
+    """Collects circles and areas, of which groups with different looks are made."""
 
-    def __init__(self, part: str, zorder: float) -> None:
-        self.part, self.zorder = part, zorder
+    def __init__(self) -> None:
         self._objects: list[int] = []
-        self._looks: list[Look] = []
         self._points: list[tuple[float, float]] = []
         self._radii: list[float] = []
         self._ends: list[int] = []
 
-    def circle(self, number: int, x: float, y: float, radius: float, look: Look) -> None:
+    def add_circle(self, number: int, x: float, y: float, radius: float) -> None:
         """Add a circle of an object."""
         self._objects.append(number)
-        self._looks.append(look)
         self._points.append((x, y))
         self._radii.append(radius)
         self._ends.append(len(self._points))
 
-    def area(self, number: int, ring: Floats, look: Look) -> None:
+    def add_area(self, number: int, ring: Floats) -> None:
         """Add an area of an object inside a ring (M, 2)."""
         self._objects.append(number)
-        self._looks.append(look)
         self._points += ring.tolist()
         self._radii.append(NO_CIRCLE)
         self._ends.append(len(self._points))
 
-    def groups(self) -> list[Group]:
-        """One group of everything; none without anything."""
-        if not self._looks:
+    def groups(self, layers: Sequence[tuple[str, float, list[Look]]]) -> list[Group]:
+        """One group of everything for each part, zorder and looks; none without anything."""
+        if not self._objects:
             return []
         ranges = np.zeros((len(self._ends), 2), dtype=np.int64)
         ranges[:, 1] = self._ends
         ranges[1:, 0] = ranges[:-1, 1]
         points, radii = np.array(self._points, dtype=np.float64), np.array(self._radii)
-        return [Group(self.part, self.zorder, True, self._objects, points, ranges, radii, self._looks)]
+        return [Group(part, z, True, self._objects, points, ranges, radii, looks) for part, z, looks in layers]

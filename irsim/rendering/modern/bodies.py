@@ -19,7 +19,7 @@ from irsim.graphics.scene.glyphs import (
     SMALL_PERSON_U,
     long_dart,
 )
-from irsim.graphics.scene.groups import GroupBuilder, circles, placed_areas
+from irsim.graphics.scene.groups import Outlines, circles, placed_areas
 from irsim.graphics.scene.scene import Circle, Geometry, Group, Line, Look, Mark, Region, Stroke
 from irsim.graphics.scene.theme import Shades, Theme, mix
 from irsim.rendering.modern.frame import stroke
@@ -29,7 +29,7 @@ from irsim.rendering.modern.things import Thing
 __all__ = ["STILL_Z", "dart", "moving_marks", "person_groups", "robot_groups", "still_marks"]
 
 STILL_Z = 1.2
-_WALL_Z, _PERSON_Z, _ROBOT_Z = 1.5, 4.0, 4.3
+_WALL_Z, _PERSON_Z, _HALO_Z, _ROBOT_Z = 1.5, 4.0, 4.28, 4.3
 _POINTS = 32
 _WHEEL = (0.22, 0.09)
 """Length and width of a wheel, as shares of the length of the body."""
@@ -110,7 +110,7 @@ def _person_looks(shades: Shades, theme: Theme, size: str, alpha: float) -> tupl
 
 def robot_groups(robots: Sequence[Thing], layout: Layout, theme: Theme) -> tuple[list[Group], list[Mark]]:
     """Robots with their true footprint, or a disc that is large enough to be seen, and a dart in it."""
-    halos, bodies, marks = GroupBuilder("halo", _ROBOT_Z - 0.02), GroupBuilder("body", _ROBOT_Z), list[Mark]()
+    outlines, halos, bodies, marks = Outlines(), list[Look](), list[Look](), list[Mark]()
     darts, poses, looks, numbers = list[Floats](), list[Pose](), list[Look](), list[int]()
     for thing in robots:
         if thing.mark is None:
@@ -122,15 +122,18 @@ def robot_groups(robots: Sequence[Thing], layout: Layout, theme: Theme) -> tuple
             thing.shades, theme, thing.state == "arrived", disc, (width, own.obj_linestyle), thing.mark.alpha
         )
         x, y, _ = thing.drawn_at
-        if disc and own.obj_linestyle in SOLID:
-            halos.circle(number, x, y, r, halo)
-            bodies.circle(number, x, y, r, body)
-        elif isinstance(shape, Region) and len(shape.rings) == 1 and own.obj_linestyle in SOLID:
-            halos.area(number, shape.rings[0], halo)
-            bodies.area(number, shape.rings[0], body)
+        solid = own.obj_linestyle in SOLID
+        area = isinstance(shape, Region) and len(shape.rings) == 1
+        if solid and (disc or area):
+            halos.append(halo)
+            bodies.append(body)
+        if solid and disc:
+            outlines.add_circle(number, x, y, r)
+        elif solid and isinstance(shape, Region) and area:
+            outlines.add_area(number, shape.rings[0])
         else:
             shape = Circle(x, y, r) if disc else shape
-            marks.append(Mark(number, "halo", shape, *halo, _ROBOT_Z - 0.02))
+            marks.append(Mark(number, "halo", shape, *halo, _HALO_Z))
             marks.append(Mark(number, "body", shape, *body, _ROBOT_Z))
         marks += [] if disc else _wheels(thing, layout, theme, thing.mark.alpha)
         if thing.wants("show_arrow"):
@@ -140,7 +143,7 @@ def robot_groups(robots: Sequence[Thing], layout: Layout, theme: Theme) -> tuple
             looks.append(inner)
             numbers.append(number)
     signs = placed_areas("dart", _ROBOT_Z + 0.01, numbers, darts, poses, looks)
-    return [*halos.groups(), *bodies.groups(), *signs], marks
+    return [*outlines.groups([("halo", _HALO_Z, halos), ("body", _ROBOT_Z, bodies)]), *signs], marks
 
 
 @lru_cache(maxsize=512)

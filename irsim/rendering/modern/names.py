@@ -62,23 +62,25 @@ class Wish:
 def wishes_of(things: Sequence[Thing], own: Sequence[Event], crowd: Crowd, layout: Layout, theme: Theme) -> list[Wish]:
     """Names and times of contacts, the most important first."""
     star = layout.metres(layout.sizes.star)
-    named = [thing for thing in things if _has_name(thing, crowd)]
+    level = crowd.level
+    named = [thing for thing in things if _has_name(thing, level)]
     first = [thing.picked or thing.state == "collided" for thing in named]
     wishes = [_name_wish(thing) for thing in compress(named, first)]
-    if crowd.level < 2 and len(own) <= CROWD["timed"]:
+    if level < 2 and len(own) <= CROWD["timed"]:
         for number, event in enumerate(own):
             place, text = (float(event.x), float(event.y)), f"{event.time:.1f} s"
             wishes.append(Wish(FRAME - number, "moment", text, theme.danger, place, (star, star), False))
     return wishes + [_name_wish(thing) for thing, early in zip(named, first, strict=True) if not early]
 
 
-def _has_name(thing: Thing, crowd: Crowd) -> bool:
-    if not thing.shown or not thing.wants("show_text", thing.kind == "robot"):
+def _has_name(thing: Thing, level: int) -> bool:
+    if not thing.shown:
         return False
     if thing.kind != "robot":
-        return "show_text" in thing.view.record.plot.model_fields_set and thing.view.shape != "walls"
-    chosen = thing.picked or (thing.state == "collided" and crowd.level < 2)
-    return crowd.level == 0 or chosen
+        chosen = "show_text" in thing.view.record.plot.model_fields_set and thing.view.shape != "walls"
+        return chosen and thing.wants("show_text", False)
+    chosen = level == 0 or thing.picked or (thing.state == "collided" and level < 2)
+    return chosen and thing.wants("show_text")
 
 
 def _name_wish(thing: Thing) -> Wish:

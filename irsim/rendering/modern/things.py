@@ -190,9 +190,11 @@ def read_things(
         )
     shown = [thing for thing in things if thing.shown]
     crowd = Crowd(sum(t.kind == "robot" for t in shown), sum(t.kind == "person" for t in shown))
+    least: dict[Kind, float] = {"robot": crowd.least_radius("robot", layout)}
+    least["person"] = crowd.least_radius("person", layout)
     for thing in things:
-        if thing.kind in ("robot", "person"):
-            thing.glyph_radius = max(thing.glyph_radius, crowd.least_radius(thing.kind, layout))
+        if thing.kind in least:
+            thing.glyph_radius = max(thing.glyph_radius, least[thing.kind])
     return things, crowd
 
 
