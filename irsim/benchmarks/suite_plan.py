@@ -88,6 +88,10 @@ def suite_plan(
     )
 
 
+_MOST_SEEDS = 10_000
+"""A plain number above this one, and above the suite's own seeds, is surely meant as a seed."""
+
+
 def _seeds(suite: Suite, wanted: int | Sequence[int] | None, full: bool) -> list[int]:
     """The seeds of a run: the suite's, some more or fewer from its first one on, or others."""
     if wanted is not None and full:
@@ -96,6 +100,9 @@ def _seeds(suite: Suite, wanted: int | Sequence[int] | None, full: bool) -> list
         return list(wanted)
     if wanted is not None and wanted < 1:
         raise SuiteError(f"there must be at least one seed, got {wanted}", "give a number such as 20")
+    if wanted is not None and wanted > max(suite.seeds.first, suite.seeds.full or 0, _MOST_SEEDS):
+        what = f"{wanted:,} are more seeds than {suite.suite} is made for, from {suite.seeds.first:,} on"
+        raise SuiteError(what, f"a plain number is how many there are: seed {wanted} alone is '{wanted}-{wanted}'")
     count = wanted or (suite.seeds.full if full and suite.seeds.full else suite.seeds.count)
     return [suite.seeds.first + k for k in range(count)]
 

@@ -13,6 +13,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
+from irsim.benchmarks.suite_plan import suite_plan
 from irsim.bridges.pedestrians.comparison import Row
 from irsim.bridges.pedestrians.comparison import compare_pedestrians as compare
 from irsim.bridges.pedestrians.imitation import GOALS, RADIUS
@@ -88,7 +89,7 @@ def pedestrians_suite(
         typer.echo(json.dumps(asdict(made)))
         return
     windows = ", ".join(f"{count} of {name} ({made.lengths[name]:g} s)" for name, count in made.windows.items())
-    show_written(made.file, f"windows: {windows}")
+    show_written(made.file, f"suite hash {suite_plan(made.file).suite_hash}; windows: {windows}")
     if made.other:
         what = (
             f"{' and '.join(made.other)}: not the files of the published results (SHA-256), so its numbers are others"

@@ -14,7 +14,7 @@ from irsim.common.data_files import skills_directory
 from irsim.common.text import listed, plural
 from irsim.lookup.answer import plain_table
 from irsim.policies.catalog import open_policy
-from irsim.scenario.behavior_override import behavior_text
+from irsim.scenario.behavior_override import AS_WRITTEN, behavior_text
 from irsim.scenario.open import read_scenario
 from irsim.scenario.perturbation import perturbation_text
 from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
@@ -63,7 +63,9 @@ def _parts(name: str) -> Iterator[str]:
     yield "## Assumptions and threats\n\n" + "\n".join(f"- {threat}" for threat in _threats(suite, scenes))
     if suite.sources:
         yield "## Sources\n\n" + "\n".join(f"- {source}" for source in suite.sources)
-    one = f"irsim run {name}/{plan.scenarios[0].name} --seed {plan.seeds[0]}"
+    first = next((policy for policy in suite.policies if policy != AS_WRITTEN), None)
+    driven = f" --policy {first}" if first else ""
+    one = f"irsim run {name}/{plan.scenarios[0].name} --seed {plan.seeds[0]}{driven}"
     listed = ", ".join(f"`{policy}`" for policy in suite.policies)
     runs = f"`irsim benchmark {name}` runs {listed}" if listed else f"`irsim benchmark {name}`"
     own = f"{runs}; one episode: `{one}`."

@@ -194,6 +194,9 @@ def test_seeds_of_a_suite_are_a_number_of_its_own_or_others(tmp_path: Path) -> N
     assert [p.reproduce.partition("--seeds ")[2] for p in (few, others, one)] == ["2", "3-5", "9,"]
     assert len({p.suite_hash for p in (plan, few, others)}) == 1
     assert len({p.hash for p in (plan, few, others)}) == 3
+    with pytest.raises(SuiteError, match="100,004 are more seeds than random_polygons_v2 is made for") as refused:
+        suite_plan("random_polygons_v2", seeds=100_004)
+    assert "seed 100004 alone is '100004-100004'" in str(refused.value)
     with pytest.raises(SuiteError, match="at least one seed"):
         suite_plan(suite, seeds=0)
     with pytest.raises(SuiteError, match="contradict"):

@@ -35,6 +35,8 @@ AUTHORS_SEEDS = range(100, 160)
 """Seeds of the table of the authors' weights."""
 CELLS_OF = {"shares": 2, "full": 2, "crowded": 1, "beside": 2, "authors": 1, "circle": 2}
 """Table -> number of its first columns, which name a row."""
+_QUOTED = {"beside": 1, "authors": 1}
+"""Table -> number of the columns after them, which repeat the paper."""
 _NAMES = {"ppo": "PPO (`multi_robot`)", "ppo_freeze": "PPO (`multi_robot_freeze`)"}
 _KINDS = ("success", "collision", "timeout")
 
@@ -187,7 +189,7 @@ def circle_table(rows: Sequence[Circle]) -> str:
 
 
 def cells_of(name: str, table: str) -> Iterator[tuple[str, str]]:
-    """The cells of a table: name of the row and of the column, and text.
+    """The cells of a table that come from episodes: name of the row and of the column, and text.
 
     Args:
         name: Name of the table.
@@ -196,7 +198,7 @@ def cells_of(name: str, table: str) -> Iterator[tuple[str, str]]:
     head, _, *lines = (line.strip("| ").split(" | ") for line in table.splitlines())
     known = CELLS_OF[name]
     for line in lines:
-        for column, cell in list(zip(head, line, strict=True))[known:]:
+        for column, cell in list(zip(head, line, strict=True))[known + _QUOTED.get(name, 0) :]:
             yield f"{', '.join(line[:known])}, {column}", cell
 
 

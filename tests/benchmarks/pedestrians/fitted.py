@@ -12,7 +12,7 @@ from irsim.bridges.pedestrians.likeness import contacts
 from irsim.components.behaviors._people import FITTED, People
 from tests.benchmarks.pedestrians.fit import distance
 from tests.benchmarks.pedestrians.human import FILES
-from tests.benchmarks.pedestrians.walks import Walks, cells, walks_of
+from tests.benchmarks.pedestrians.walks import Walks, cells, differences, walks_of
 
 NOT_SHIPPED = {
     "sfm": {
@@ -69,6 +69,21 @@ def parts(compared: Mapping[str, Sequence[Row]]) -> dict[str, str]:
     return {
         f"fitted_{behavior}": "\n".join([f"**`{behavior}`**\n", *table(rows)]) for behavior, rows in compared.items()
     }
+
+
+def gains() -> dict[str, str]:
+    """How much lower ADE is with other options, with intervals, from the kept cases."""
+    pairs = {
+        "horizon": ("{name: orca, timeHorizon: 2}", "orca", GOALS[0]),
+        "eth_gain": ("sfm, eth", "sfm, defaults", GOALS[1]),
+    }
+    texts = {}
+    for name, pair in pairs.items():
+        rows = zip(FILES, differences(*pair).values(), strict=True)
+        texts[name] = ", ".join(
+            f"{-mean:.3f} m [{-high:.3f}, {-low:.3f}] in {where}" for where, (mean, low, high) in rows
+        )
+    return texts
 
 
 def table(rows: Sequence[Row]) -> list[str]:

@@ -13,13 +13,15 @@ from irsim.bridges.pedestrians.imitation import RADIUS, GoalName, goals_of, imit
 from irsim.bridges.pedestrians.likeness import Likeness, likeness, nearest
 from tests.benchmarks.reference.kept import kept_lines, write
 
-__all__ = ["CASES", "KEPT", "Walks", "cells", "constant_velocity", "keep", "kept_cells", "walks_of"]
+__all__ = ["CASES", "KEPT", "Walks", "cells", "constant_velocity", "differences", "keep", "kept_cells", "walks_of"]
 
 KEPT = "pedestrians_cases"
 """Name of the kept file with the errors of each case, see :mod:`tests.benchmarks.reference.kept`."""
 CASES = "All cases"
 """What the lines of the file hold, in words."""
-_HEAD = ("recording", "behavior", "goal", "cases", "ade_mm", "fde_mm", "contacts")
+_HEAD = ("recording", "behavior", "goal", "cases", "ade_mm", "fde_mm", "contacts", "persons")
+_RESAMPLES, _SEED = 10_000, 20_230_616
+"""Number of draws of persons for an interval, and their seed."""
 
 
 class Walks(NamedTuple):
@@ -65,8 +67,11 @@ def walks_of(cases: Cases, text: str, behavior: Mapping[str, Any] | None, goal: 
 
 
 def constant_velocity(cases: Cases) -> Walks:
-    """People who keep their last known velocity."""
-    return walks_of(cases, CONSTANT_VELOCITY, None, None)
+    """People who keep their last known velocity; their line also says which person each case is about."""
+    made = walks_of(cases, CONSTANT_VELOCITY, None, None)
+    _, person = np.unique(cases.goal, axis=0, return_inverse=True)  # a recording without a gap ends in one place
+    made.line["persons"] = " ".join(map(str, person.ravel()))
+    return made
 
 
 def cells(one: Likeness) -> tuple[str, str, str]:
@@ -77,6 +82,31 @@ def cells(one: Likeness) -> tuple[str, str, str]:
 def keep(walks: Sequence[Walks]) -> None:
     """Keep the errors of each case."""
     write(KEPT, _HEAD, [one.line for one in walks])
+
+
+def differences(behavior: str, other: str, goal: str) -> dict[str, tuple[float, float, float]]:
+    """Recording → ADE of a behavior minus that of another one, in the kept cases, with its 95 % interval [m].
+
+    Persons are resampled with all of their cases, which begin 0.4 s apart and are much alike.
+
+    Args:
+        behavior: The behavior in words.
+        other: The other one.
+        goal: Where people want to go.
+    """
+    lines = {(line["recording"], line["behavior"], line["goal"]): line for line in kept_lines(KEPT)}
+    made = {}
+    for recording in dict.fromkeys(recording for recording, *_ in lines):
+        first, second = (
+            np.array(lines[recording, name, goal]["ade_mm"].split(), dtype=float) / 1000 for name in (behavior, other)
+        )
+        person = np.array(lines[recording, CONSTANT_VELOCITY, ""]["persons"].split(), dtype=int)
+        total, number = np.bincount(person, first - second), np.bincount(person)
+        count = len(number)
+        drawn = np.random.default_rng(_SEED).multinomial(count, np.full(count, 1 / count), size=_RESAMPLES)
+        low, high = np.percentile((drawn @ total) / (drawn @ number), [2.5, 97.5])
+        made[recording] = float((first - second).mean()), float(low), float(high)
+    return made
 
 
 def kept_cells() -> dict[tuple[str, str, str], tuple[str, str, str]]:

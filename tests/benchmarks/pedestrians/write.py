@@ -34,6 +34,7 @@ def measure(data: Path) -> str:
         **fitted.parts(options),
         **corridor.parts(),
         **robot.parts(plan, result),
+        **fitted.gains(),
     )
 
 

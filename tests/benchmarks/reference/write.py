@@ -113,7 +113,7 @@ TABLES = {
         "random_polygons_v2",
         ("robots-5", "step-10-0.2"),
         ("orca", "rvo", "dash", "avocado", "footprint_orca"),
-        ("robots-5", "robots-10", "step-10-0.05", "step-10-0.2"),
+        ("robots-5", "robots-10", "robots-25", "step-10-0.05", "step-10-0.2"),
     ),
     "random_polygons_v2_networks": Table(
         "random_polygons_v2",
@@ -136,20 +136,23 @@ TABLES = {
         "circle_swap_v2", ("diff-8",), ("orca", "rvo", "sfm", "dash", "avocado", "footprint_orca"), ("diff-8", "omni-8")
     ),
     "social_v2": Table(
-        "social_v2", ("head-on",), ("as-written", "orca", "sfm", "dash", *_ADDED), again=("head-on", "doorway")
+        "social_v2",
+        ("head-on",),
+        ("as-written", "orca", "sfm", "dash", *_ADDED),
+        again=("head-on", "doorway", "bottleneck"),
     ),
     "clutter_v2": Table(
         "clutter_v2",
         ("posts-15",),
         ("follow", "orca", "sfm", "dash", *_ADDED, "goal_lidar", "corridor_social"),
-        again=("posts-15",),
+        again=("posts-15", "posts-45"),
         protocols=("freeze",),
     ),
     "crowdnav_circle_v2": Table(
         "crowdnav_circle_v2",
         ("circle-invisible-5",),
         ("orca", "orca-margin", "dash", *_ADDED),
-        again=("circle-invisible-5",),
+        again=("circle-invisible-5", "circle-invisible-20"),
         protocols=("freeze",),
     ),
     "crowdnav_circle_v2_networks": Table(

@@ -44,8 +44,10 @@ _ABOUT = """\
 The tables of policies that learn show one training of each. Here a recipe was trained several times, once for each seed
 in the head of its table, as `python -m tests.benchmarks.trainings.train NAME SEED FOLDER` does. Each training keeps its
 best round by the validation seeds of its task (900,000 and above). All are measured in `random_polygons_v1` under the
-protocol that they were trained for, with the seeds 30,000 to 30,099, which no choice has looked at. *Shipped* is the
-policy of that name that comes with irsim, from an earlier training with seed 0, whose length differs.
+protocol that they were trained for, with the seeds 30,000 to 30,099. The authors say that no choice has used these, and
+no file can show it. *Shipped* is the policy of that name that comes with irsim, from an earlier training with seed 0,
+whose length differs. A training ends after the round in which it reaches its steps, so the kept round may lie behind
+them.
 
 Shares of successes in %. *Between trainings* is the standard deviation of these shares, and the interval of their mean
 by Student's t. *Between episodes* is the interval of the same mean when the 100 scenes are resampled and the trainings
