@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = ["contour_marks", "fog_marks", "is_seen", "shown_fog", "shown_grid", "zone_parts"]
 
-_ZONE_Z, _MAP_Z, FOG_Z, _NAME_Z = 0.5, 1.0, 1.15, 7.0
+_ZONE_Z, _MAP_Z, FOG_Z, HIDING_Z, _NAME_Z = 0.5, 1.0, 1.15, 1.55, 7.0
 _CONTOUR = 1.2
 MAX_CONTOUR = 20_000
 """Number of pieces of a contour above which it is left out: cells are then smaller than the line."""
@@ -78,13 +78,25 @@ def _runs(edges: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
     return list(zip(rows.tolist(), starts.tolist(), ends.tolist(), strict=True))
 
 
-def shown_fog(fog: Fog, theme: Theme) -> Fog:
-    """Fog in the colours of a theme, below static bodies."""
+def shown_fog(fog: Fog, theme: Theme, *, hides: bool = False) -> Fog:
+    """Fog in the colours of a theme, below static bodies.
+
+    Args:
+        fog: The fog.
+        theme: The theme.
+        hides: Whether nothing shines through it: it lies above static bodies, and leaves the cells beside free ones,
+            where the seen sides of bodies are, free as well.
+    """
+    if hides:
+        free = np.pad(np.asarray(fog.explored, dtype=bool), 1)
+        beside = [np.roll(free, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+        grown = np.logical_or.reduce(beside)[1:-1, 1:-1]
+        return replace(fog, explored=grown, color=theme.fog, alpha=1.0, zorder=HIDING_Z, soft=_FOG_EDGE)
     return replace(fog, color=theme.fog, alpha=_FOG_ALPHA, zorder=FOG_Z, soft=_FOG_EDGE)
 
 
 def fog_marks(fog: Fog, layout: Layout, theme: Theme) -> list[Mark]:
-    """Lines over the fog, which tell it from a body."""
+    """Lines over fog as it is shown, which tell it from a body."""
     x0, x1, y0, y1 = fog.extent
     columns, rows = fog.explored.shape
     step = layout.metres(_HATCH_STEP) * np.sqrt(2)
@@ -100,7 +112,7 @@ def fog_marks(fog: Fog, layout: Layout, theme: Theme) -> list[Mark]:
     line, first, last = runs[:, 0], runs[:, 1], runs[:, 2] - 1
     ends = np.stack([x[line, first], y[first], x[line, last], y[last]], axis=1).reshape(-1, 2, 2)
     edge = stroke(theme.still_edge, _HATCH)
-    return [Mark(FRAME, "hatch", Segments(ends), None, edge, _HATCH_ALPHA, FOG_Z + 0.01)]
+    return [Mark(FRAME, "hatch", Segments(ends), None, edge, _HATCH_ALPHA, fog.zorder + 0.01)]
 
 
 def is_seen(fog: Fog, geometry: Geometry) -> bool:

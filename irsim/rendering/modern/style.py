@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from irsim.common.arrays import Floats
 from irsim.graphics.figure.measuring import TextSizes
 from irsim.graphics.scene.groups import kept
-from irsim.graphics.scene.scene import Bounds, GridImage, Group, Label, Mark, Scene, Stroke
+from irsim.graphics.scene.scene import Bounds, Fog, GridImage, Group, Label, Mark, Scene, Stroke
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern import bodies, frame, ground, heading, names, sensing, signs, ways
 from irsim.rendering.modern.layout import Layout
@@ -66,6 +66,11 @@ class Request:
     events: Sequence[Event] | None = None
 
 
+def _is_hidden(thing: Thing, scene: Scene) -> bool:
+    """Whether fog lies over a body."""
+    return scene.fog is not None and thing.mark is not None and not ground.is_seen(scene.fog, thing.mark.geometry)
+
+
 class ModernStyle:
     """Draws scenes of one world. Things that do not change from one frame to the next keep their marks.
 
@@ -117,6 +122,9 @@ class ModernStyle:
             events=events, overrides=request.overrides, picked=request.picked, before=self._things,
         )  # fmt: skip
         by_number = self._things = {thing.number: thing for thing in things}
+        hides = simulation.scenario.world.plot.fog == "hide"
+        if hides:
+            things = [thing for thing in things if thing.kind == "robot" or not _is_hidden(thing, scene)]
         marks, labels = list(self._ground), list[Label]()
         grids = self._add_maps(scene, marks)
         if request.zones:
@@ -124,9 +132,9 @@ class ModernStyle:
             zone_marks, zone_labels = self._same(("zones",), lambda: ground.zone_parts(zones, layout, theme))
             marks += zone_marks
             labels += zone_labels
-        fog = None if scene.fog is None else ground.shown_fog(scene.fog, theme)
-        if scene.fog is not None:
-            marks += self._hatch(scene, layout)
+        fog = None if scene.fog is None else ground.shown_fog(scene.fog, theme, hides=hides)
+        if fog is not None:
+            marks += self._hatch(fog, layout)
         body_marks, groups = self._bodies(things, scene, layout)
         marks += body_marks
         for picture in scene.pictures:
@@ -226,11 +234,10 @@ class ModernStyle:
             marks += known[2]
         return grids
 
-    def _hatch(self, scene: Scene, layout: Layout) -> list[Mark]:
-        assert scene.fog is not None
+    def _hatch(self, fog: Fog, layout: Layout) -> list[Mark]:
         known = self._fog[0]
-        if known is None or (known != scene.fog.explored).any():
-            self._fog = scene.fog.explored.copy(), ground.fog_marks(scene.fog, layout, self.theme)
+        if known is None or (known != fog.explored).any():
+            self._fog = fog.explored.copy(), ground.fog_marks(fog, layout, self.theme)
         return self._fog[1]
 
     def _bodies(self, things: Sequence[Thing], scene: Scene, layout: Layout) -> tuple[list[Mark], list[Group]]:
@@ -249,7 +256,7 @@ class ModernStyle:
 
     def _still_body(self, thing: Thing, scene: Scene) -> list[Mark]:
         theme = self.theme
-        hidden = scene.fog is not None and thing.mark is not None and not ground.is_seen(scene.fog, thing.mark.geometry)
+        hidden = _is_hidden(thing, scene)
         known = self._still.get(thing.number)
         if known is None or known[0] is not thing.mark or known[1] != hidden:
             made = bodies.still_marks(thing, theme)
