@@ -1,4 +1,4 @@
-"""What each page asks for before it is shown: as little as possible, and a description for search engines."""
+"""The head of each page: it asks for little before the page is shown, and describes it to search engines."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def lighter(text: str, *, searches: bool, about: str = "") -> str:
     Args:
         text: The page as Sphinx has written it.
         searches: Whether it shows results of the search.
-        about: What it is about; empty: its first paragraph says it.
+        about: Its subject; empty: its first paragraph says it.
     """
     text = re.sub(r'<link rel="preload" as="script"[^>]*>\n?', "", text)
     if not searches:
@@ -36,8 +36,8 @@ def lighter(text: str, *, searches: bool, about: str = "") -> str:
 def _first_paragraph(text: str) -> str:
     """The words of the first paragraph of the article."""
     _, _, article = text.partition('<article class="bd-article">')
-    found = re.search(r"<p>(.*?)</p>", article, re.DOTALL)
-    return unescape(re.sub(r"<[^>]*>", "", found[1])) if found else ""
+    first = re.search(r"<p>(.*?)</p>", article, re.DOTALL)
+    return unescape(re.sub(r"<[^>]*>", "", first[1])) if first else ""
 
 
 def _short(words: str) -> str:

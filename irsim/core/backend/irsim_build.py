@@ -118,7 +118,7 @@ def with_source(finder: bytes) -> bytes:
     """The module that finds the files of an editable install, whose loaders then hand out source, as Python's do.
 
     Editors and notebooks that complete names with jedi skip a package if the class of its loader has no
-    ``get_source``, and scikit-build-core wraps loaders in a class that has none.
+    ``get_source``, and the class in which scikit-build-core wraps loaders lacks it.
     """
     head = b"    def __getattr__(self, name: str) -> object:\n        return getattr(self._skbuild_loader, name)\n"
     asked = head.replace(b"__getattr__", b"get_source").replace(b"_loader, name)", b"_loader, 'get_source')(name)")
@@ -129,10 +129,10 @@ def change_entry(wheel: Path, pattern: str, change: Callable[[bytes], bytes]) ->
     """Replace the file of a wheel that has such a name, if one has, and its hash; everything else stays as it is."""
     with zipfile.ZipFile(wheel) as archive:
         entries = [(entry, archive.read(entry)) for entry in archive.infolist()]
-    found = [(entry.filename, change(data)) for entry, data in entries if re.fullmatch(pattern, entry.filename)]
-    if not found:
+    matches = [(entry.filename, change(data)) for entry, data in entries if re.fullmatch(pattern, entry.filename)]
+    if not matches:
         return
-    [(name, changed)] = found
+    [(name, changed)] = matches
     digest = base64.urlsafe_b64encode(hashlib.sha256(changed).digest()).rstrip(b"=").decode()
     row = f"{name},sha256={digest},{len(changed)}"
     with zipfile.ZipFile(wheel, "w") as archive:

@@ -84,8 +84,8 @@ class WorldPlot(Options):
     theme: Literal["light", "dark"] = "light"
     """Colours of the style `modern`."""
     fog: Literal["veil", "hide"] = "veil"
-    """What fog leaves to see in the style `modern`: outlines of things that nobody has seen (`veil`), or nothing
-    (`hide`)."""
+    """Fog of the style `modern`: dotted outlines show through it (`veil`), or it covers everything that no sensor has
+    seen (`hide`)."""
     figure_pixels: Annotated[list[Annotated[Number, Field(ge=1, le=20_000)]], vector(("px", "px"), 2)] = [1000, 800]
     """Size of the figure: [width, height]."""
     saved_figure: SavedFigure = SavedFigure()

@@ -1,4 +1,4 @@
-"""How behaviors walk in the place of recorded people: the numbers of a row, and those of each case, which are kept."""
+"""How behaviors walk in the place of recorded people: the numbers of a row, and the kept errors of each case."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["CASES", "KEPT", "Walks", "cells", "constant_velocity", "differences"
 KEPT = "pedestrians_cases"
 """Name of the kept file with the errors of each case, see :mod:`tests.benchmarks.reference.kept`."""
 CASES = "All cases"
-"""What the lines of the file hold, in words."""
+"""The content of the file, in words."""
 _HEAD = ("recording", "behavior", "goal", "cases", "ade_mm", "fde_mm", "contacts", "persons")
 _RESAMPLES, _SEED = 10_000, 20_230_616
 """Number of draws of persons for an interval, and their seed."""
@@ -85,7 +85,7 @@ def keep(walks: Sequence[Walks]) -> None:
 
 
 def differences(behavior: str, other: str, goal: str) -> dict[str, tuple[float, float, float]]:
-    """Recording → ADE of a behavior minus that of another one, in the kept cases, with its 95 % interval [m].
+    """Recording → ADE of a behavior minus ADE of another one, in the kept cases, with its 95 % interval [m].
 
     Persons are resampled with all of their cases, which begin 0.4 s apart and are much alike.
 
@@ -115,6 +115,6 @@ def kept_cells() -> dict[tuple[str, str, str], tuple[str, str, str]]:
     for line in kept_lines(KEPT):
         ade, fde = (np.array(line[key].split(), dtype=float) / 1000 for key in ("ade_mm", "fde_mm"))
         touched = len(line["contacts"].split()) / int(line["cases"])
-        found = Likeness(len(ade), float(ade.mean()), float(fde.mean()), touched, np.nan, np.nan)
-        made[line["recording"], line["behavior"], line["goal"]] = cells(found)
+        own = Likeness(len(ade), float(ade.mean()), float(fde.mean()), touched, np.nan, np.nan)
+        made[line["recording"], line["behavior"], line["goal"]] = cells(own)
     return made

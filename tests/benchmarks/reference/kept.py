@@ -124,7 +124,7 @@ def source_of(name: str, what: str = "All episodes") -> str:
 
     Args:
         name: Name of the table.
-        what: What its lines hold.
+        what: Words for its lines.
     """
     where = f"`{_path(name).relative_to(FOLDER.parents[2]).as_posix()}` of the repository"
     lines = f"whose lines (`python -m tests.benchmarks.reference.kept {name}`) have SHA-256"

@@ -1,4 +1,4 @@
-"""What the rows over all scenarios of the leaderboard do not show, in sentences made of the kept episodes."""
+"""Remarks on rows over all scenarios of the leaderboard, which hide much, in sentences made of the kept episodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fog in the style `modern`: what a reader may see of things that nobody has seen."""
+"""Fog in the style `modern`: whether a picture shows things that no sensor has seen."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def test_a_picture_that_hides_has_no_trace_of_what_nobody_has_seen(opened: Opene
     env.step()
     scene, _ = picture_of(env)
     assert [bool(parts_of(scene, number)) for number in (1, 2, 3)] == shown
-    pixels, layout = pixels_of(env)
+    pixels, _ = pixels_of(env)
     elsewhere = opened(ROOM.format(fog=fog).replace("[10, 2, 0]", "[10, 6, 0]").replace("[10, 5, 0]", "[8, 5, 0]"))
     elsewhere.step()
     other, _ = pixels_of(elsewhere)
