@@ -199,11 +199,11 @@ def test_a_name_stands_above_its_thing_unless_something_is_there() -> None:
 
 
 def test_names_avoid_one_another_and_move_away_where_it_is_crowded() -> None:
-    found = core.place_names(np.array([THING] * 20), **NAMES)
-    numbers = [number for number, *_ in found if number >= 0]
+    placed = core.place_names(np.array([THING] * 20), **NAMES)
+    numbers = [number for number, *_ in placed if number >= 0]
     assert numbers == sorted(numbers)
-    assert [number for number, *_ in found[len(numbers) :]] == [-1] * (20 - len(numbers))
-    boxes = [box for number, *box in found if number >= 0]
+    assert [number for number, *_ in placed[len(numbers) :]] == [-1] * (20 - len(numbers))
+    boxes = [box for number, *box in placed if number >= 0]
     assert len(boxes) > 8
     assert not any(a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3] for a, b in combinations(boxes, 2))
 

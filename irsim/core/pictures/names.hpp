@@ -24,7 +24,7 @@ struct NamePlace {
   TextBox box{};
 };
 
-/// What is around names.
+/// The surroundings of names.
 struct NameSurroundings {
   TextBox inside;                     ///< names stay in it
   double height = 0;                  ///< of a name

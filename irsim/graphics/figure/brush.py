@@ -61,7 +61,7 @@ class Batch:
 
 Fit = Literal["any", "area", "line", "alone"]
 Work = Batch | Mark
-"""What is painted with one call; a mark that does not fit into a batch stands alone."""
+"""Marks that one call paints; a mark that does not fit into a batch stands alone."""
 
 
 def prepare(
@@ -114,7 +114,7 @@ def prepare(
 
 
 def _fit(mark: Mark) -> Fit:
-    """The batches that a mark fits into: of areas, of lines, of any shapes, or none."""
+    """The batches that a mark fits into: of areas, of lines, of any shapes, or `alone`."""
     shape = mark.geometry
     if mark.stroke.style not in SOLID or mark.glow is not None:
         return "alone"
@@ -210,7 +210,7 @@ def paint(
         canvas: The canvas, which tells the view and notes what was painted.
         target: Pixels to paint into, of the size of the canvas, and the Agg renderer that they belong to.
         ax: Axes in world coordinates, which cut the marks.
-        work: What is painted, as :func:`prepare` returns it.
+        work: Batches and marks, as :func:`prepare` returns it.
         ends: Styles of caps and joins of strokes.
     """
     pixels, renderer = target

@@ -145,7 +145,7 @@ class Mark:
 Look = tuple[Color | None, Stroke, float]
 """Fill, outline and opacity of a mark."""
 NO_CIRCLE = -1.0
-"""Stands for the radius of a shape that is no circle."""
+"""Stands for the radius of a line or an area with corners."""
 
 
 @dataclass(slots=True, eq=False)
@@ -154,7 +154,7 @@ class Group:
 
     Attributes:
         part, zorder: The part that they show, and their layer.
-        closed: Whether shapes that are no circles are areas; else they are lines.
+        closed: Whether shapes with corners are areas; else they are lines.
         objects: The object of each mark.
         points: (K, 2) points of all shapes; a circle has one, its centre.
         ranges: (N, 2) first and end of the points of each shape.
@@ -299,7 +299,7 @@ class Scene:
         extent: The world: x from, x to, y from, y to.
         center: Centre of the view; None shows the whole world.
         fog: The fog, or None in a world without fog.
-        groups: More marks, above those of the same part and layer.
+        groups: More marks, above single ones of the same part and layer.
     """
 
     time: float
@@ -315,7 +315,7 @@ class Scene:
     groups: list[Group] = field(default_factory=list)
 
     def all_marks(self) -> list[Mark]:
-        """All marks one by one, with those of groups."""
+        """All marks one by one, also out of groups."""
         return [*self.marks, *(mark for group in self.groups for mark in group.marks())]
 
     def look_at(self, extent: tuple[float, float, float, float]) -> None:

@@ -144,7 +144,7 @@ def place_names(
         )
         for wish in wishes
     ]  # fmt: skip
-    found = core.place_names(
+    placed = core.place_names(
         np.array(needed, dtype=np.float64),
         heights,
         (left + 1, bottom + 1, right - 1, top - 1),
@@ -154,7 +154,7 @@ def place_names(
         lines["trajectory"][0],
     )
     leaders, labels, halo = list[Mark](), list[Label](), (theme.paper, NAME["halo"])
-    for wish, (number, *box) in zip(wishes, found, strict=True):
+    for wish, (number, *box) in zip(wishes, placed, strict=True):
         if number < 0:
             continue
         place = layout.at(box[0], box[1] + _DESCENT * size)

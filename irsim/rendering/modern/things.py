@@ -138,7 +138,7 @@ def read_things(
         events: Events of the episode so far.
         overrides: Plot keys that the caller sets.
         picked: Names of the objects that stand out.
-        before: The things of the last picture with this layout; those that stand, unchanged, serve again.
+        before: The things of the last picture with this layout; unchanged ones that stand serve again.
     """
     marks = {mark.object: mark for mark in scene.marks if mark.part == "body"}
     images = {picture.object for picture in scene.pictures}

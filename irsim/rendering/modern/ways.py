@@ -66,7 +66,7 @@ def trail_groups(
     """The ways that objects have come: opaque tints, which neither bead at joints nor blacken where they cross.
 
     Args:
-        things: The objects, all robots or none.
+        things: The objects; either all of them are robots, or no one is.
         simulation: The simulation.
         layout: The layout.
         theme: The colours.

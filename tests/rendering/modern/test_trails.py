@@ -44,9 +44,9 @@ def test_a_trail_is_cut_by_age_and_thinned(opened: Opened, steps: int, longest: 
     for row in (0, 1):
         states = np.concatenate([[state.initial_state(row)[:2]], state.trajectory(row)[:, :2]])
         expected = [] if steps == 0 else pieces_of(states, longest, least)
-        found = [points[a:b] for a, b in ranges[row].tolist() if b > a]
-        assert len(found) == len(expected)
-        for one, other in zip(found, expected, strict=True):
+        pieces = [points[a:b] for a, b in ranges[row].tolist() if b > a]
+        assert len(pieces) == len(expected)
+        for one, other in zip(pieces, expected, strict=True):
             assert np.array_equal(one, other)
 
 
