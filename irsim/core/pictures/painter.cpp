@@ -4,6 +4,7 @@ namespace irsim {
 namespace {
 
 constexpr float kFullMask = 255.0f;
+constexpr double kOpaque = 255.0;
 constexpr double kGlowFall = 0.62;  ///< Share of its opacity that a glow loses up to its reach.
 constexpr double kGlowRim = 0.1;    ///< Share of the reach over which its rest fades out at the end.
 
@@ -66,11 +67,11 @@ void Painter::circle(const Pixels& pixels, Vec2 center, double radius, Ink fill,
   const double reach = radius * scale();
   Raster& raster = raster_around(&middle, 1, reach + std::max(width, 0.0) + kBeside);
   if (fill.alpha > 0) {
-    add_disc(raster, middle, reach);
+    add_disc(raster, middle, reach, fill.alpha / kOpaque);
     paint(raster, pixels, fill);
   }
   if (edge.alpha > 0 && width > 0.0) {
-    add_ring(raster, middle, reach, width);
+    add_ring(raster, middle, reach, width, edge.alpha / kOpaque);
     paint(raster, pixels, edge);
   }
 }

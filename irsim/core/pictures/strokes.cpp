@@ -5,20 +5,21 @@
 namespace irsim {
 namespace {
 
-constexpr double kSagitta = 0.02;           // distance of a circle from the polygon that stands for it [px]
+constexpr double kSagitta = 0.02;           // distance of an opaque circle from the polygon that stands for it [px]
 constexpr int kFewestCorners = 12;          // of such a polygon
 constexpr double kOneStep = 0.99;           // of a step around a circle; a smaller turn has one edge
+constexpr double kSmooth = 0.015;           // half a width, squared, times the sine of a turn [px^2]
 constexpr double kShortest = 1e-9;          // shorter segments are left out [px]
 constexpr double kAlignedPx = 1e-4;         // deviation up to which a segment counts as horizontal or vertical
 constexpr std::size_t kMostSnapped = 1024;  // corners; longer outlines are not snapped
 
-int corners_of(double radius) {
-  return std::max(kFewestCorners, static_cast<int>(std::ceil(kPi * std::sqrt(std::max(radius, 0.0) / (2 * kSagitta)))));
+int corners_of(double radius, double sagitta = kSagitta) {
+  return std::max(kFewestCorners, static_cast<int>(std::ceil(kPi * std::sqrt(std::max(radius, 0.0) / (2 * sagitta)))));
 }
 
 /// Collect the polygon that stands for a circle; its area equals the circle's.
-void add_circle(Raster& raster, Vec2 center, double radius, bool backwards) {
-  const int count = corners_of(radius);
+void add_circle(Raster& raster, Vec2 center, double radius, double opacity, bool backwards) {
+  const int count = corners_of(radius, kSagitta / std::sqrt(opacity));
   const double step = (backwards ? -kTurn : kTurn) / count;
   const double reach = radius * std::sqrt(std::fabs(step) / std::sin(std::fabs(step)));
   const Vec2 turn = unit(step);
@@ -82,21 +83,32 @@ void add_corner(Raster& raster, Vec2 corner, Vec2 before, Vec2 after, const Line
   }
 }
 
-}  // namespace
-
-void add_disc(Raster& raster, Vec2 center, double radius) {
-  if (radius > 0.0) add_circle(raster, center, radius, false);
+/// Whether a stroke turns so little between two segments that its sides may simply meet, whatever its join is: on the
+/// inner side that takes away what the segments share, at most half of `kSmooth`, and it adds less on the outer side.
+bool is_smooth(Vec2 before, Vec2 after, double shorter, double half) {
+  const double reach = half * std::fabs(cross(before, after));
+  return dot(before, after) > 0.0 && reach <= shorter && half * reach <= kSmooth;
 }
 
-void add_ring(Raster& raster, Vec2 center, double radius, double width) {
-  add_disc(raster, center, radius + width / 2);
-  if (radius > width / 2) add_circle(raster, center, radius - width / 2, true);
+}  // namespace
+
+void add_disc(Raster& raster, Vec2 center, double radius, double opacity) {
+  if (radius > 0.0) add_circle(raster, center, radius, opacity, false);
+}
+
+void add_ring(Raster& raster, Vec2 center, double radius, double width, double opacity) {
+  add_disc(raster, center, radius + width / 2, opacity);
+  if (radius > width / 2) add_circle(raster, center, radius - width / 2, opacity, true);
 }
 
 void add_stroke(Raster& raster, const std::vector<Vec2>& points, bool closed, const LineStyle& style) {
   thread_local std::vector<Vec2> path, directions;
+  thread_local std::vector<double> lengths;
+  thread_local std::vector<std::array<Vec2, 2>> sides;  // of each segment, from its begin and end to the left
   path.clear();
   directions.clear();
+  lengths.clear();
+  sides.clear();
   for (const Vec2 p : points) {
     if (path.empty() || norm(p - path.back()) > kShortest) path.push_back(p);
   }
@@ -106,16 +118,27 @@ void add_stroke(Raster& raster, const std::vector<Vec2>& points, bool closed, co
   const int corners = corners_of(half);
   const std::size_t count = path.size(), segments = closed ? count : count - 1;
   for (std::size_t i = 0; i < segments; ++i) {
-    const Vec2 step = path[(i + 1) % count] - path[i];
-    const Vec2 direction = step * (1.0 / norm(step));
+    const Vec2 step = path[i + 1 == count ? 0 : i + 1] - path[i];
+    lengths.push_back(norm(step));
+    const Vec2 direction = step * (1.0 / lengths.back());
     directions.push_back(direction);
     const Vec2 across = Vec2{-direction.y, direction.x} * half;
-    const Vec2 from = path[i], to = path[(i + 1) % count];
-    raster.edge(from - across, to - across);
-    raster.edge(to + across, from + across);
+    sides.push_back({across, across});
   }
   for (std::size_t i = closed ? 0 : 1; i < segments; ++i) {
-    add_corner(raster, path[i], directions[(i + segments - 1) % segments], directions[i], style, corners);
+    const std::size_t last = i == 0 ? segments - 1 : i - 1;
+    const Vec2 before = directions[last], after = directions[i];
+    if (is_smooth(before, after, std::min(lengths[last], lengths[i]), half)) {
+      const Vec2 middle = (before + after) * (half / (1.0 + dot(before, after)));
+      sides[last][1] = sides[i][0] = {-middle.y, middle.x};
+    } else {
+      add_corner(raster, path[i], before, after, style, corners);
+    }
+  }
+  for (std::size_t i = 0; i < segments; ++i) {
+    const Vec2 from = path[i], to = path[i + 1 == count ? 0 : i + 1];
+    raster.edge(from - sides[i][0], to - sides[i][1]);
+    raster.edge(to + sides[i][1], from + sides[i][0]);
   }
   if (closed) return;
   const Vec2 first = directions.front(), last = directions.back();

@@ -17,11 +17,11 @@ struct LineStyle {
   std::vector<double> dashes{};  ///< lengths of dashes and of the gaps after them [px]; empty for a solid line
 };
 
-/// Collect a disc.
-void add_disc(Raster& raster, Vec2 center, double radius);
+/// Collect a disc; `opacity`, above 0 and at most 1, tells how exact its rim has to be.
+void add_disc(Raster& raster, Vec2 center, double radius, double opacity);
 
 /// Collect the stroke of a circle.
-void add_ring(Raster& raster, Vec2 center, double radius, double width);
+void add_ring(Raster& raster, Vec2 center, double radius, double width, double opacity);
 
 /// Collect the stroke of a line, or of a polygon if it is closed.
 void add_stroke(Raster& raster, const std::vector<Vec2>& points, bool closed, const LineStyle& style);
