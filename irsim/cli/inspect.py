@@ -181,7 +181,7 @@ def _show(table: RunTable, out: object) -> None:
         out.print("no such events in these steps")
     steps = f"steps {table.from_step} to {table.to_step}"
     if table.every > 1:
-        steps += f", every {table.every} steps: use --every, --from, --to and --robot for more detail"
+        steps += f", every {table.every} steps: use --every, --first, --last and --objects for more detail"
     more = f" of {table.total}; continue with --cursor {table.next_cursor}" if table.next_cursor else ""
     out.print(f"{len(table.rows)} rows{more}, {steps}")
 

@@ -11,6 +11,7 @@ __all__ = ["OLD_NAMES", "PANELS", "finished"]
 
 OLD_NAMES: dict[str, dict[str, str]] = {
     "inspect": {"--from": "--first", "--to": "--last", "--robot": "--objects"},
+    "schema": {"--for": "--mark"},
     "diff": {"--run": "--simulate"},
     "train": {"--steps": "--decisions"},
     "map import": {"--robot": "--add-robot", "--radius": "--inflate"},

@@ -59,7 +59,7 @@ def policies(
         for heading in ("policy", *(() if narrow else ("kind", "returns")), "knows", "drives", "what it does"):
             table.add_column(heading, overflow="fold", no_wrap=heading == "policy")
         for one in listed:
-            knows = one.knows or ", ".join(one.needs) or "-"
+            knows = (one.knows or ", ".join(one.needs) or "-").replace("+", " +")  # lines break there
             kinds = () if narrow else (one.kind, one.output)
             row = (clean(knows, 100), clean(", ".join(one.drives), 100), clean(one.about, 200))
             table.add_row(Text(clean(one.name), "bold cyan"), *kinds, *row)

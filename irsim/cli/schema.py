@@ -42,7 +42,7 @@ def schema(
     ] = None,
     scenario: Annotated[
         Path | None,
-        typer.Option("--for", metavar="FILE", help="Add a first line to FILE with which editors find the schema."),
+        typer.Option("--mark", metavar="FILE", help="Add a first line to FILE with which editors find the schema."),
     ] = None,
 ) -> None:
     """Write the JSON Schemas of scenarios, suites, tasks and networks, or connect a scenario file to its schema."""

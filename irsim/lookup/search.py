@@ -232,6 +232,7 @@ def all_topics(schema: Node) -> set[str]:
         *templates.names(),
         *ALL_GUIDES,
         *METRIC_TOPICS,
+        *("task", "policies", "suites"),
         *(f"task.{name}" for name in TASKS.names()),
         *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names()),
     }

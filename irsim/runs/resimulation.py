@@ -106,11 +106,14 @@ def follow_record(run: Run, env: Env) -> Callable[[int], None]:
     trace, simulation = run.trace(), env.simulation
     if trace.pose[0].shape != simulation.pose.shape:
         raise RunError("unreadable-run", f"the scenario of run {run.id} has other objects now", "run it again")
-    start = int(trace.step[0])
+    start, period = int(trace.step[0]), simulation.scenario.world.step_time
 
     def move(step: int) -> None:
         for row in range(int(simulation.count[0]) - start + 1, step - start + 1):
             simulation.pose[:], simulation.control[:] = trace.pose[row], trace.control[row]
+            moved = trace.pose[row] - trace.pose[row - 1]  # records have no velocities
+            moved[:, 2] = (moved[:, 2] + np.pi) % (2 * np.pi) - np.pi
+            simulation.twist[:] = np.nan_to_num(moved) / period
             simulation.step_external()
             simulation.goal[:], simulation.stopped[:] = trace.goal[row], trace.stopped[row]
             simulation.arrived[:], simulation.collided[:] = trace.arrived[row], trace.collided[row]

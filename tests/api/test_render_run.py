@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 import irsim
 from irsim.api.render_run import render_run
+from irsim.bundled import templates
 from irsim.cli.app import app
 from irsim.policies import FunctionPolicy
 
@@ -68,3 +69,15 @@ def test_what_would_change_a_run_is_refused(run: str) -> None:
     assert done.exit_code != 0
     assert "has no step 31" in done.output
     assert not Path("a.png").exists()
+
+
+def test_people_face_where_they_walked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Records have no velocities, and the drive of people never turns them: their motion says where they look."""
+    monkeypatch.chdir(tmp_path)
+    scene = templates.scenario_file("crossing")
+    run = str(irsim.run(scene, seed=1, record=True, steps=60).run_id)
+    render_run(run, "recorded.png", steps=60)
+    irsim.render(scene, "live.png", seed=1, steps=60)
+    with Image.open("recorded.png") as recorded, Image.open("live.png") as live:
+        apart = np.asarray(recorded.convert("RGB")).astype(int) - np.asarray(live.convert("RGB")).astype(int)
+    assert np.abs(apart).max() <= 8

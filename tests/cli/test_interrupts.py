@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -142,3 +145,21 @@ def test_a_training_without_a_finished_round_begins_again(moment: int, tmp_path:
     assert said.startswith("interrupted; no round was finished; again: irsim train task.yaml -o taught --set slots=8")
     follow(tmp_path, said)
     assert (tmp_path / "taught" / "best.zip").is_file()
+
+
+@pytest.mark.usefixtures("ordinary_processes")
+@pytest.mark.parametrize("after", [0.0, 0.8, 1.1, 2.0])
+def test_ctrl_c_at_a_terminal_reaches_all_processes_and_one_answers(after: float, tmp_path: Path) -> None:
+    """A terminal sends the signal to the whole group, at whatever the processes of a benchmark do: start, or run."""
+    (tmp_path / "easy.yaml").write_text(SUITE.replace("count: 12", "count: 20000"), encoding="utf-8")
+    command = [sys.executable, "-m", "irsim", "benchmark", "easy.yaml", "-o", "kept", "--workers", "3"]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True) as begun:
+        while not (tmp_path / "kept" / "episodes.jsonl").exists():
+            assert begun.poll() is None
+            time.sleep(0.02)
+        time.sleep(after)
+        os.killpg(begun.pid, signal.SIGINT)
+        _, said = begun.communicate(timeout=60)
+    assert begun.returncode == 130
+    assert "Traceback" not in said
+    assert said.splitlines()[-1].startswith("interrupted; ")

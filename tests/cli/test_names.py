@@ -28,7 +28,6 @@ MEANINGS = {
     "--behavior": "policy|Behavior of the robot",
     "--csv": "comma-separated values",
     "--end": "End of the window of time",
-    "--for": "FILE",
     "--force": "Overwrite",
     "--import": "import a Python module",
     "--json": "JSON",

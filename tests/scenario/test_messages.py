@@ -187,6 +187,8 @@ def test_lenient_does_what_2_12_does(data: dict[str, Any], check: Any) -> None:
         ("robot: {yaw_goal_tolerance: 0.1}\n", HEADING),
         ("robot: {xy_goal_tolerance: 0.1}\n", "rename it to 'goal_threshold'"),
         ("robot: {vel_max: {linear: 1, angular: 2}}\n", "write the numbers alone, in a list: [1, 2]"),
+        ("robot:\n  goal: 9, 3\n", "write [9, 3]"),
+        ("robot:\n  goal: (9.5 3)\n", "write [9.5, 3]"),
         ("world: {dt: 0.1}\n", "rename it to 'step_time'"),
         ("robot: {sensors: [{range: 5}]}\n", "rename it to 'range_max'"),
         ("robot: {sensors: [{name: fmcw_lidar2d, beams: 5}]}\n", "rename it to 'number'"),

@@ -118,7 +118,7 @@ def _distribution(ax: Axes, labels: dict[str, str], episodes: Sequence[EpisodeRo
 
     newer = matplotlib.__version_info__ >= (3, 10)
     sideways: dict[str, Any] = {"orientation": "horizontal"} if newer else {"vert": False}
-    boxes = ax.boxplot(values, **sideways, widths=0.6, showfliers=False, patch_artist=True)
+    boxes = ax.boxplot(values, **sideways, widths=0.6, whis=(0, 100), patch_artist=True)
     for place, box in enumerate(boxes["boxes"]):
         box.set_facecolor(COLORS[place % len(COLORS)])
         label, own = list(labels.values())[place], values[place]

@@ -224,13 +224,15 @@ th {{ border-bottom: 1px solid var(--ink); position: sticky; top: 0; }}
 th button {{ font: inherit; font-weight: 600; color: inherit; background: none; border: 0; padding: 0;
   cursor: pointer; }}
 th button:focus-visible {{ outline: 2px solid var(--near); outline-offset: 2px; }}
+th[aria-sort=none] button::after {{ content: " \\2195"; color: var(--muted); font-weight: 400; }}
 th[aria-sort=ascending] button::after {{ content: " \\2191"; }}
 th[aria-sort=descending] button::after {{ content: " \\2193"; }}
 tr.first td, .sorted td {{ border-top: 1px solid var(--line); }}
 figure svg text {{ fill: currentColor; }}
 figure svg g:has(> title) {{ cursor: help; }}
 .hint {{ margin: 0 0 .2rem; }}
-@media print {{ .hint {{ display: none; }} .wide {{ overflow: visible; }} td, th {{ white-space: normal; }} }}
+@media print {{ .hint {{ display: none; }} .wide {{ overflow: visible; }} td, th {{ white-space: normal; }}
+  th, th:first-child, td:first-child {{ position: static; }} }}
 .small, figcaption, .note {{ color: var(--muted); font-size: 13px; }}
 .charts {{ display: grid; grid-template-columns: repeat(auto-fit, minmax(min(30rem, 100%), 1fr)); gap: 1rem; }}
 figure {{ margin: 0 0 1rem; }}

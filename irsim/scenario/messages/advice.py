@@ -10,6 +10,7 @@ from irsim.common.arguments import is_number
 from irsim.diagnostics.diagnostic import Path
 from irsim.options.vectors import is_vector
 from irsim.scenario.messages.findings import key_path
+from irsim.scenario.messages.number_text import read_number
 from irsim.scenario.model.lookup import at
 from irsim.scenario.yaml.formatting import flow
 
@@ -45,8 +46,17 @@ def advice_on_key(path: Path, data: Any) -> tuple[str | None, str | None]:
     return None, None
 
 
+_MOST_NUMBERS = 4
+"""Most numbers of a vector that a text may mean."""
+
+
 def vector_of(value: Any) -> list[float] | None:
-    """The vector that a mapping such as ``{x: 9, y: 5}`` means; None for any other value."""
+    """The vector that a mapping such as ``{x: 9, y: 5}``, or a text such as ``9, 5``, means; None for other values."""
+    if isinstance(value, str):
+        parts = value.strip("() ").replace(",", " ").split()
+        known = [read_number(part, None).value for part in parts] if 2 <= len(parts) <= _MOST_NUMBERS else []
+        numbers = [one for one in known if one is not None]
+        return [int(one) if one.is_integer() else one for one in numbers] if len(numbers) == len(parts) else None
     if not isinstance(value, Mapping) or not {"x", "y"} <= set(value):
         return None
     heading = [key for key in value if key in _HEADINGS]
