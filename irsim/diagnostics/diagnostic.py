@@ -106,7 +106,7 @@ def nearest(word: object, choices: Iterable[str], cutoff: float = 0.6) -> str | 
 
 
 def _words(name: str) -> set[str]:
-    return set(re.findall("[a-z0-9]+", name.lower()))
+    return set(re.findall("[a-z][a-z0-9]*", name.lower()))
 
 
 def suggestion(word: object, choices: Iterable[str], otherwise: Otherwise) -> str | Otherwise:

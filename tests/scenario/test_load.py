@@ -259,4 +259,5 @@ def test_not_found_says_where_and_what_is_near(places: dict[str, Path]) -> None:
 def test_the_name_of_a_template_says_how_to_make_a_file_of_it(places: dict[str, Path], wanted: str) -> None:
     last = not_found(wanted).splitlines()[-1]
     assert last == "'doorway' is a template: `irsim new doorway` writes doorway.yaml, which can then be used."
-    assert "is a template" not in not_found("doorways")
+    assert last in not_found("dorway").splitlines()
+    assert "is a template" not in not_found("entirely-different.yaml")
