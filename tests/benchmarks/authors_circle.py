@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 import irsim
 
-__all__ = ["main", "outcomes", "scene"]
+__all__ = ["main", "outcomes", "scene", "shares"]
 
 _FAST_RIGHT = 16.0
 """Turn rate to the right that no heading error exceeds [rad/s]."""
@@ -41,8 +41,8 @@ robot:
 """
 
 
-def outcomes(robots: int, seeds: Sequence[int], *, free: bool, margin: float) -> tuple[int, int, int]:
-    """Number of episodes with success, collision and time-out.
+def outcomes(robots: int, seeds: Sequence[int], *, free: bool, margin: float) -> str:
+    """A letter for each seed: s, c or t for success, collision or time-out.
 
     Args:
         robots: Number of robots.
@@ -51,15 +51,20 @@ def outcomes(robots: int, seeds: Sequence[int], *, free: bool, margin: float) ->
         margin: Margin of the policy [m].
     """
     policy = {"name": "rl_rvo_authors", "margin": margin, "unlimited_right_turns": free}
-    [row] = irsim.benchmark(
+    made = irsim.benchmark(
         scene(robots, _FAST_RIGHT if free else _LIMIT),
         policies=[policy],
         seeds=list(seeds),
         steps=300,
         perturb={"heading": round(math.pi, 4)},
         until="first_collision",
-    ).rows
-    return row.success.count, row.collision.count, row.timeout.count
+    )
+    return "".join(episode.outcome[0] for episode in made.episodes)
+
+
+def shares(letters: str) -> str:
+    """Numbers of successes, collisions and time-outs."""
+    return "/".join(str(letters.count(kind)) for kind in "sct")
 
 
 def main(episodes: int = 100, robots: Sequence[int] = (6, 8, 10, 12, 14)) -> None:
@@ -68,7 +73,7 @@ def main(episodes: int = 100, robots: Sequence[int] = (6, 8, 10, 12, 14)) -> Non
     for count in robots:
         for margin in (0.1, 0.2):
             cells = [outcomes(count, range(episodes), free=free, margin=margin) for free in (False, True)]
-            print(f"| {count} | {margin} m |", " | ".join("/".join(map(str, cell)) for cell in cells), "|", flush=True)
+            print(f"| {count} | {margin} m |", " | ".join(map(shares, cells)), "|", flush=True)
 
 
 if __name__ == "__main__":

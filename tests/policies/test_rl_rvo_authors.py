@@ -123,5 +123,5 @@ def test_the_weights_of_the_authors_have_the_outcomes_of_the_page(
         for seed, outcome in wanted.items():
             result = irsim.run(f"random_polygons_v1/{scenario}/freeze", seed=seed, policy="rl_rvo_authors")
             assert (scenario, seed, result.outcome) == (scenario, seed, outcome)
-    assert outcomes(14, range(4), free=False, margin=0.1) == (0, 4, 0)
-    assert outcomes(14, range(4), free=True, margin=0.1) == (2, 2, 0)
+    assert outcomes(14, range(4), free=False, margin=0.1) == "cccc"
+    assert outcomes(14, range(4), free=True, margin=0.1).count("s") == 2

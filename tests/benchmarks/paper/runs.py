@@ -102,8 +102,7 @@ def circle(report: Report, seeds: int = 100) -> Iterator[Circle]:
     for robots in (6, 10, 14):
         for margin in (0.1, 0.2):
             for limited in (True, False):
-                counts = outcomes(robots, range(seeds), free=not limited, margin=margin)
-                yield Circle(robots, margin, limited, *counts)
+                yield Circle(robots, margin, limited, outcomes(robots, range(seeds), free=not limited, margin=margin))
         report(f"the authors' circle with {robots} robots is done")
 
 
@@ -139,12 +138,7 @@ def keep(path: Path, rows: Sequence[Row]) -> None:
 def kept_circle() -> list[Circle]:
     """The kept outcomes of the authors' circle."""
     return [
-        Circle(
-            int(row["robots"]),
-            float(row["margin"]),
-            row["limited"] == "yes",
-            *(int(row[kind]) for kind in ("success", "collision", "timeout")),
-        )
+        Circle(int(row["robots"]), float(row["margin"]), row["limited"] == "yes", row["outcomes"])
         for row in kept(CIRCLE)
     ]
 

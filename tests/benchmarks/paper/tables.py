@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from irsim.metrics.statistics import wilson
+from tests.benchmarks.authors_circle import shares
 
 __all__ = [
     "AUTHORS_SEEDS",
@@ -65,14 +66,12 @@ PAPER = {
 
 
 class Circle(NamedTuple):
-    """Outcomes on the authors' circle: robots, margin [m], whether right turns are limited, and numbers of episodes."""
+    """Outcomes on the authors' circle: robots, margin [m], whether right turns are limited, and a letter per seed."""
 
     robots: int
     margin: float
     limited: bool
-    success: int
-    collision: int
-    timeout: int
+    outcomes: str
 
 
 def _outcomes(rows: Sequence[Row], robots: int, protocol: str, policy: str) -> list[Row]:
@@ -181,7 +180,7 @@ def authors_table(rows: Sequence[Row]) -> str:
 def circle_table(rows: Sequence[Circle]) -> str:
     """The authors' circle, with and without the limit of right turns."""
     lines = ["| robots | margin | right turns limited | not limited |", "|---|---|---|---|"]
-    made = {(row.robots, row.margin, row.limited): f"{row.success}/{row.collision}/{row.timeout}" for row in rows}
+    made = {(row.robots, row.margin, row.limited): shares(row.outcomes) for row in rows}
     for robots, margin in dict.fromkeys((row.robots, row.margin) for row in rows):
         cells = " | ".join(made[robots, margin, limited] for limited in (True, False))
         lines.append(f"| {robots} | {margin} m | {cells} |")
