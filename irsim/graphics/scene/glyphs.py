@@ -122,7 +122,7 @@ STAR = _star(8, 0.45)
 def long_dart(half_width: float, half_length: float) -> Points:
     """The dart in a body that is not a disc [m]."""
     tip = min(LONG_TIP["of_half_length"] * half_length, LONG_TIP["of_half_width"] * half_width)
-    flat = min(1.0, half_length / half_width)
+    flat = 1.0 if half_length >= half_width else half_length / half_width
     return [(tip * flat, 0.0), *((x * half_width * flat, y * half_width * flat) for x, y in DART[1:])]
 
 
