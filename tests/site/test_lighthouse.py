@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import gzip
 import json
 import os
 import subprocess
-from collections.abc import Iterator
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from threading import Thread
-from typing import Any
 
 import pytest
 
@@ -23,41 +17,6 @@ LEAST = {"accessibility": 0.95, "best-practices": 0.95, "seo": 0.85}
 MOST = 500_000
 """Bytes of a page with all that it loads: what its score of performance, 93 to 98 on a quiet machine, comes from."""
 FLAGS = "--headless --no-sandbox --disable-gpu"
-
-
-class _Packed(SimpleHTTPRequestHandler):
-    """Text is compressed, as every host of pages does it."""
-
-    protocol_version = "HTTP/1.1"
-
-    def do_GET(self) -> None:
-        path = Path(self.translate_path(self.path))
-        if not path.is_file():
-            self.send_error(404)
-            return
-        data, kind = path.read_bytes(), self.guess_type(str(path))
-        self.send_response(200)
-        self.send_header("Content-Type", kind)
-        if not kind.startswith(("image/png", "image/gif", "video", "font")):
-            data = gzip.compress(data, 6)
-            self.send_header("Content-Encoding", "gzip")
-        self.send_header("Content-Length", str(len(data)))
-        self.end_headers()
-        self.wfile.write(data)
-
-    def log_message(self, *arguments: Any) -> None:
-        pass
-
-
-@pytest.fixture(scope="module")
-def address(html: Path) -> Iterator[str]:
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Packed, directory=str(html)))
-    thread = Thread(target=server.serve_forever)
-    thread.start()
-    yield f"http://127.0.0.1:{server.server_port}"
-    server.shutdown()
-    thread.join()
-    server.server_close()
 
 
 @pytest.mark.parametrize("page", PAGES)
