@@ -129,7 +129,7 @@ def test_an_interrupted_import_of_a_map_leaves_no_file(moment: int, tmp_path: Pa
 def test_an_interrupted_training_says_how_it_goes_on(workers: str, tmp_path: Path) -> None:
     (tmp_path / "task.yaml").write_text(TASK, encoding="utf-8")
     few = ["--set", "slots=8", "--set", "rollout=16", "--set", "round_updates=1", "--decisions", "1200"]
-    said = interrupted(tmp_path, 24, "train", "task.yaml", "-o", "taught", *few, "--workers", workers)
+    said = interrupted(tmp_path, 60, "train", "task.yaml", "-o", "taught", *few, "--workers", workers)
     more = " --workers 2" if workers == "2" else ""
     assert said.endswith(f"go on: irsim train --resume -o taught{more}")
     follow(tmp_path, said)
@@ -137,7 +137,7 @@ def test_an_interrupted_training_says_how_it_goes_on(workers: str, tmp_path: Pat
 
 
 @pytest.mark.learn
-@pytest.mark.parametrize("moment", [1, 3])
+@pytest.mark.parametrize("moment", [20, 24])
 def test_a_training_without_a_finished_round_begins_again(moment: int, tmp_path: Path) -> None:
     (tmp_path / "task.yaml").write_text(TASK, encoding="utf-8")
     few = ["--set", "slots=8", "--set", "rollout=16", "--set", "round_updates=1", "--decisions", "300"]
