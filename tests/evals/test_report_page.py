@@ -56,7 +56,7 @@ def shown(page: Any, what: str) -> list[str]:
 
 def open_all(page: Any) -> None:
     page.evaluate("document.querySelectorAll('details').forEach(one => { one.open = true })")
-    page.wait_for_function("document.querySelectorAll('image[href]').length > 0")
+    until(page, "document.querySelectorAll('image[href]').length > 0")
 
 
 @pytest.mark.parametrize("width", WIDTHS)
@@ -99,7 +99,7 @@ def test_a_failure_shows_its_evidence_and_the_place(report: Any) -> None:
     report.locator("#corridor > summary").click()
     failed = report.locator('#corridor details.trial[data-arm="skill"]')
     failed.locator("> summary").click()
-    report.wait_for_function("document.querySelectorAll('image[href]').length === 2")
+    until(report, "document.querySelectorAll('image[href]').length === 2")
     text = failed.inner_text()
     assert "radius 0.2" in text
     assert "scenario.yaml line 6" in text
@@ -146,4 +146,4 @@ def test_texts_of_answers_do_nothing(report: Any) -> None:
 
 def test_a_link_opens_its_case(written: Path, watched: Watched) -> None:
     watched.page.goto(written.resolve().as_uri() + "#speed")
-    watched.page.wait_for_function("document.getElementById('speed').open")
+    until(watched.page, "document.getElementById('speed').open")

@@ -14,7 +14,7 @@ from irsim.api.benchmark_report import write_report
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.graphics.scene.theme import DARK, LIGHT
-from tests.browser import Watched
+from tests.browser import Watched, until
 
 pytestmark = pytest.mark.browser
 
@@ -80,14 +80,14 @@ def test_a_phone_scrolls_tables_and_not_the_page(report: Path, watched: Watched)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     wide = "document.querySelector('.wide')"
     assert page.evaluate(f"{wide}.scrollWidth > {wide}.clientWidth && getComputedStyle({wide}).overflowX === 'auto'")
-    page.wait_for_function("!document.querySelector('.hint').hidden")
+    until(page, "!document.querySelector('.hint').hidden")
     assert "scroll it sideways" in page.inner_text(".hint")
     left = "document.querySelector('tbody td').getBoundingClientRect().left"
     before = page.evaluate(left)
     page.evaluate(f"{wide}.scrollLeft = 120")
     assert page.evaluate(left) == before  # the names of the scenarios stay
     page.set_viewport_size({"width": 1600, "height": 800})
-    page.wait_for_function("document.querySelector('.hint').hidden")
+    until(page, "document.querySelector('.hint').hidden")
 
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
@@ -124,10 +124,10 @@ def test_all_failed_seeds_have_a_command(report: Path, watched: Watched) -> None
 
 def test_a_link_and_its_replay_say_the_same(report: Path, watched: Watched) -> None:
     links = re.findall(r'<a href="(replays/[^"]+)">([^<]*)</a>', report.read_text(encoding="utf-8"))
-    target, told = next((target, html.unescape(text)) for target, text in links if "collided with" in text)
+    target, caption = next((target, html.unescape(text)) for target, text in links if "collided with" in text)
     form = r"seed (\d+): (\S+) collided with '(.*)' at ([\d.]+) s.* \((.*)\)"
-    seed, who, other, when, where = re.findall(form, told)[0]
+    seed, robot, other, time, scene = re.findall(form, caption)[0]
     opened = watched.open(report.parent / target, "document.getElementById('facts').textContent")
-    assert opened.inner_text("#title") == f"{where}, seed {seed}"
-    hit = re.findall(rf"'{who}' hit '{other}' at ([\d.]+) s", opened.inner_text("#facts"))[0]
-    assert float(when) == pytest.approx(float(hit), abs=0.051)
+    assert opened.inner_text("#title") == f"{scene}, seed {seed}"
+    hit = re.findall(rf"'{robot}' hit '{other}' at ([\d.]+) s", opened.inner_text("#facts"))[0]
+    assert float(time) == pytest.approx(float(hit), abs=0.051)
