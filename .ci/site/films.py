@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from pathlib import Path
 
-from imageio_ffmpeg import get_ffmpeg_exe
-from PIL import Image
+import numpy as np
+from PIL import Image, ImageSequence
+
+from irsim.graphics.encoding.video import VideoWriter
 
 __all__ = ["with_films"]
 
-_EXACT = ("-threads", "1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1")
+_FPS = 10
+_EXACT = ("-threads", "1", "-fflags", "+bitexact", "-flags:v", "+bitexact")
 """Options with which the same pictures give the same bytes."""
-_FORMAT = ("-vf", "scale=trunc(iw/2)*2:trunc(ih/2)*2", "-pix_fmt", "yuv420p", "-c:v", "libx264", "-crf", "23")
 
 
 def with_films(text: str, path: Path) -> str:
@@ -29,13 +30,15 @@ def with_films(text: str, path: Path) -> str:
 def _film(folder: Path, alt: str, source: str) -> str:
     gif = folder / source
     film, first = gif.with_suffix(".mp4"), gif.with_suffix(".png")
-    if not film.exists():
-        command = [get_ffmpeg_exe(), "-v", "error", "-i", str(gif), *_FORMAT, *_EXACT, "-movflags", "+faststart"]
-        subprocess.run([*command, str(film)], check=True)
-        with Image.open(gif) as picture:
-            picture.convert("RGB").save(first)
-    with Image.open(first) as picture:
-        width, height = picture.size
+    with Image.open(gif) as animation:
+        width, height = animation.size
+        if not film.exists():
+            animation.convert("RGB").save(first)
+            writer = VideoWriter(film, fps=_FPS, quality=5.5, output_params=_EXACT)
+            for picture in ImageSequence.Iterator(animation):
+                for _ in range(round(picture.info["duration"] * _FPS / 1000)):
+                    writer.add(np.asarray(picture.convert("RGBA")))
+            writer.close()
     stem = source.removesuffix(".gif")
     return (
         f'<video autoplay loop muted playsinline controls aria-label="{alt}" poster="{stem}.png" width="{width}" '

@@ -111,21 +111,26 @@ def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: Bench
     title = f"{one.scenario}, {label}, seed {one.seed}"
     replayed = _replay(scenario, one, plan, policy, folder / REPLAYS / name, title)
     caption = f"seed {one.seed}: {_how_it_failed(one, replayed)} ({one.scenario}, {label})"
-    return Shown(caption, png, "" if replayed is None else f"{REPLAYS}/{name}", _command(plan, result, one))
+    return Shown(
+        caption,
+        png,
+        "" if replayed is None else f"{REPLAYS}/{name}",
+        _command(plan, result, one.scenario, one.behavior, one.seed),
+    )
 
 
-def _command(plan: Plan, result: BenchmarkResult, one: EpisodeRow) -> str:
+def _command(plan: Plan, result: BenchmarkResult, scenario: str, behavior: str, seed: int) -> str:
     """The command that runs and records an episode again, in the folder in which the benchmark was started."""
-    path, policy, perturb = one.scenario, one.behavior, plan.perturb
+    path, policy, perturb = scenario, behavior, plan.perturb
     if isinstance(result, SuiteResult) and plan.suite is not None:
         suite = shlex.split(result.reproduce)[2]  # as the user named it: irsim benchmark SUITE …
-        path = f"{suite}/{one.scenario}"
-        policy = next(name for name, text in result.policies.items() if text == one.behavior)
+        path = f"{suite}/{scenario}"
+        policy = next(name for name, text in result.policies.items() if text == behavior)
         perturb = perturb if perturb != [perturbation_text(item) for item in plan.suite.perturb] else []
-    extra = [] if one.behavior == AS_WRITTEN else ["--policy", policy]
+    extra = [] if behavior == AS_WRITTEN else ["--policy", policy]
     extra += [word for text in perturb for word in ("--perturb", text)]
     file = None if path.startswith("(text") else path
-    return reproduce_command("run", file, one.seed, plan.steps, plan.strict, plan.imports, [*extra, "--record"])
+    return reproduce_command("run", file, seed, plan.steps, plan.strict, plan.imports, [*extra, "--record"])
 
 
 def _how_it_failed(one: EpisodeRow, replayed: RunResult | None) -> str:

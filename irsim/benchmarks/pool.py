@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import threading
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import asdict
 from typing import Any
 
@@ -316,22 +315,7 @@ class _Helper:
 
 
 def _start() -> Child:
-    """Start a further process, which Ctrl-C at a terminal does not reach: this one ends it."""
-    with _without_interrupts():
-        return Child(python("irsim.benchmarks.pool"), start_new_session=False, env=os.environ | ONE_THREAD)
-
-
-@contextmanager
-def _without_interrupts() -> Iterator[None]:
-    """Hold back SIGINT, which processes that are started meanwhile do for all of their lives."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    return Child(python("irsim.benchmarks.pool"), start_new_session=False, env=os.environ | ONE_THREAD)
 
 
 def main() -> None:

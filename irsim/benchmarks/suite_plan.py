@@ -22,6 +22,9 @@ from irsim.scenario.yaml.rewrite import yaml_flow
 
 __all__ = ["suite_plan", "suite_policy", "suite_rules", "suite_scene"]
 
+_MOST_SEEDS = 10_000
+"""A plain number above this one, and above the suite's own seeds, is surely meant as a seed."""
+
 
 def suite_plan(
     suite: str | Suite,
@@ -86,10 +89,6 @@ def suite_plan(
         perturb=[perturbation_text(item) for item in perturbations],
         reproduce=shlex.join(words),
     )
-
-
-_MOST_SEEDS = 10_000
-"""A plain number above this one, and above the suite's own seeds, is surely meant as a seed."""
 
 
 def _seeds(suite: Suite, wanted: int | Sequence[int] | None, full: bool) -> list[int]:

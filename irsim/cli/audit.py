@@ -105,7 +105,9 @@ def _files(given: Sequence[str]) -> dict[str, str]:
     pairs = [text.partition("=") for text in given]
     odd = next((text for text, (name, sign, file) in zip(given, pairs, strict=True) if not (name and file)), None)
     if odd is not None:
-        raise InputError(f"--policy-file takes NAME=FILE, got {clean(odd, 100)}", "such as --policy mine.npz=mine.npz")
+        raise InputError(
+            f"--policy-file takes NAME=FILE, got {clean(odd, 100)}", "such as --policy-file mine.npz=mine.npz"
+        )
     return {name: file for name, _, file in pairs}
 
 

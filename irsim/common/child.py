@@ -24,8 +24,8 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext, suppress
 from typing import IO, Any, Protocol
 
 from irsim.common.held import for_children
@@ -73,12 +73,12 @@ def python(module: str) -> list[str]:
 
 
 class Child:
-    """A process with pipes to its standard input and from its standard output.
+    """A process with pipes to its standard input and from its standard output, which Ctrl-C at a terminal spares.
 
     Args:
         command: Program and arguments.
-        start_new_session: Whether it gets a session of its own: Ctrl-C at a terminal does not reach it, and what it
-            has started ends with it.
+        start_new_session: Whether it gets a session of its own, so that what it has started ends with it. Otherwise
+            it stays in the group of this process, and holds SIGINT back.
         options: Further arguments of :class:`subprocess.Popen`.
 
     Raises:
@@ -87,14 +87,16 @@ class Child:
 
     def __init__(self, command: Sequence[str], *, start_new_session: bool = True, **options: Any) -> None:
         self._own_group = start_new_session
-        self.process: subprocess.Popen[bytes] = subprocess.Popen(
-            list(command),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            bufsize=0,
-            start_new_session=start_new_session,
-            **{**options, "pass_fds": (*options.get("pass_fds", ()), *for_children()[1])},
-        )
+        self.process: subprocess.Popen[bytes]
+        with nullcontext() if start_new_session else _without_interrupts():
+            self.process = subprocess.Popen(
+                list(command),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                bufsize=0,
+                start_new_session=start_new_session,
+                **{**options, "pass_fds": (*options.get("pass_fds", ()), *for_children()[1])},
+            )
         assert self.process.stdin is not None
         assert self.process.stdout is not None
         self.input: IO[bytes] = self.process.stdin
@@ -158,6 +160,19 @@ class Child:
         with suppress(subprocess.TimeoutExpired):
             self.process.wait(_GRACE_S)
         return how_ended(self.process.returncode)
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Hold back SIGINT, which processes that are started meanwhile do for all of their lives."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def how_ended(code: int | None) -> str:

@@ -10,14 +10,24 @@ from typing import Any, Literal, TypeVar
 
 from irsim.diagnostics.codes import CODES
 
-__all__ = ["Diagnostic", "Edit", "Path", "Severity", "format_path", "is_slip_of", "nearest", "suggestion"]
+__all__ = [
+    "SLIP_SIMILARITY",
+    "Diagnostic",
+    "Edit",
+    "Path",
+    "Severity",
+    "format_path",
+    "is_slip_of",
+    "nearest",
+    "suggestion",
+]
 
 Otherwise = TypeVar("Otherwise", str, None)
 
 Severity = Literal["error", "warning", "hint"]
 Path = tuple[str | int, ...]
 _ORDER = {"error": 0, "warning": 1, "hint": 2}
-_SLIP_SIMILARITY = 0.75
+SLIP_SIMILARITY = 0.75
 """Similarity from which a word is a slip of another, 1 for equal words."""
 
 
@@ -96,12 +106,11 @@ def nearest(word: object, choices: Iterable[str], cutoff: float = 0.6) -> str | 
     ``swap_circle`` means ``circle-swap``, and the last one of several.
     """
     lowered = {str(choice).lower(): str(choice) for choice in choices}
-    asked = _words(str(word))
-    same = [choice for choice in lowered if len(asked) > 1 and asked <= _words(choice)]
-    if same and str(word).lower() not in lowered:
-        fewest = min(len(_words(choice)) for choice in same)
-        return lowered[[choice for choice in same if len(_words(choice)) == fewest][-1]]
-    matches = difflib.get_close_matches(str(word).lower(), list(lowered), 1, cutoff)
+    text, asked = str(word).lower(), _words(str(word))
+    same = [choice for choice in lowered if asked <= _words(choice)] if len(asked) > 1 else []
+    if same and text not in lowered:
+        return lowered[min(reversed(same), key=lambda choice: len(_words(choice)))]
+    matches = difflib.get_close_matches(text, list(lowered), 1, cutoff)
     return lowered[matches[0]] if matches else None
 
 
@@ -117,7 +126,7 @@ def suggestion(word: object, choices: Iterable[str], otherwise: Otherwise) -> st
 
 def is_slip_of(word: object, meant: str) -> bool:
     """Whether ``word`` is ``meant`` with a letter or two wrong, so that it can hardly mean anything else."""
-    return nearest(word, [meant], _SLIP_SIMILARITY) is not None
+    return nearest(word, [meant], SLIP_SIMILARITY) is not None
 
 
 def by_severity(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:

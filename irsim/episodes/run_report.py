@@ -134,11 +134,10 @@ def run_result(
     elif "collision" in ends:
         outcome = "collision"
     reason: str | None = None
-    if lost is not None and outcome != "success":
-        reason = f"{lost.message}; the run ended"
-    elif outcome != "success":
+    if outcome != "success":
         touched = plan.until == "first_collision" and facts.steps < plan.horizon
-        reason = reason_message(facts, robots, None if touched else plan.source)
+        source = None if touched else plan.source
+        reason = reason_message(facts, robots, source) if lost is None else f"{lost.message}; the run ended"
     summary, lost_code = _summary(facts, robots, plan, left, zones), _lost_code(lost)
     if lost_code is not None:
         summary += f"; the {LOST_THINGS[lost_code]} was lost, which ended the run"

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from irsim.common.angles import wrap
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance
 from irsim.runs.files import RunError, plain_file, unreadable
@@ -112,7 +113,7 @@ def follow_record(run: Run, env: Env) -> Callable[[int], None]:
         for row in range(int(simulation.count[0]) - start + 1, step - start + 1):
             simulation.pose[:], simulation.control[:] = trace.pose[row], trace.control[row]
             moved = trace.pose[row] - trace.pose[row - 1]  # records have no velocities
-            moved[:, 2] = (moved[:, 2] + np.pi) % (2 * np.pi) - np.pi
+            moved[:, 2] = wrap(moved[:, 2])
             simulation.twist[:] = np.nan_to_num(moved) / period
             simulation.step_external()
             simulation.goal[:], simulation.stopped[:] = trace.goal[row], trace.stopped[row]

@@ -26,10 +26,10 @@ def test_a_page_is_shown_soon(page: str, address: str, tmp_path: Path) -> None:
     command = ["node", str(script), f"{address}/{page}.html", "--quiet", f"--chrome-flags={FLAGS}", "--output=json"]
     command += [f"--output-path={report}", f"--only-categories=performance,{','.join(LEAST)}"]
     subprocess.run(command, env={**os.environ, "CHROME_PATH": os.environ["IRSIM_CHROMIUM"]}, check=True, timeout=180)
-    told = json.loads(report.read_text(encoding="utf-8"))
-    scores = {name: told["categories"][name]["score"] for name in LEAST}
+    judged = json.loads(report.read_text(encoding="utf-8"))
+    scores = {name: judged["categories"][name]["score"] for name in LEAST}
     assert {name: score for name, score in scores.items() if score < LEAST[name]} == {}
-    requests = told["audits"]["network-requests"]["details"]["items"]
+    requests = judged["audits"]["network-requests"]["details"]["items"]
     assert sum(one["transferSize"] for one in requests) <= MOST
-    shown = told["audits"]["largest-contentful-paint"]["numericValue"]
-    assert shown <= 3 * 2500, shown  # ms; a quiet machine is three times as fast
+    delay = judged["audits"]["largest-contentful-paint"]["numericValue"]
+    assert delay <= 3 * 2500, delay  # ms; a quiet machine is three times as fast

@@ -31,7 +31,7 @@ from irsim.benchmarks.report.rows import RANKS, policy_labels
 from irsim.benchmarks.summary import is_summary
 from irsim.common.hashing import digest
 from irsim.common.text import clean, listed
-from irsim.results.benchmark import BenchmarkResult, EpisodeRow
+from irsim.results.benchmark import BenchmarkResult
 from irsim.runs.page_colors import scheme_rules
 
 __all__ = ["Shown", "page"]
@@ -58,7 +58,7 @@ def page(
     result: BenchmarkResult,
     shown: Sequence[Shown] = (),
     notes: Sequence[str] = (),
-    again: Callable[[EpisodeRow], str] | None = None,
+    again: Callable[[str, str, int], str] | None = None,
 ) -> str:
     """The page: facts, tables, charts, worst episodes, notes, and how to run it again.
 
@@ -68,14 +68,14 @@ def page(
         result: The result.
         shown: Episodes as pictures.
         notes: Further notes.
-        again: The command that runs an episode again.
+        again: The command that runs an episode again, of a scenario, a policy as text and a seed.
     """
     labels, columns = policy_labels(result), columns_of(result)
     title = _shown(title_of(result))
     rows = [[row.scenario, labels[row.behavior], str(row.episodes), *cells_of(row, columns)] for row in result.rows]
     main = (["scenario", "policy", "n", *(heading for _, heading in columns)], rows)
     zones, differences = zones_of(result), differences_of(result)
-    failed = sum(one.outcome in ("collision", "timeout") for one in result.episodes)
+    failed = sum(len(seeds) for row in result.rows for seeds in row.failed.values())
     figures = [f"<figure>{svg}<figcaption>{_shown(caption)}</figcaption></figure>" for caption, svg in charts(result)]
     worst = [_episode(one) for one in shown]
     parts = [
@@ -107,18 +107,16 @@ def page(
 
 
 def _failures(
-    result: BenchmarkResult, labels: Mapping[str, str], again: Callable[[EpisodeRow], str] | None
+    result: BenchmarkResult, labels: Mapping[str, str], again: Callable[[str, str, int], str] | None
 ) -> Table | None:
     """Seeds that failed, by scenario, policy and outcome, and the command of the first one; None without any."""
-    failed: dict[tuple[str, str, str], list[EpisodeRow]] = {}
-    for one in result.episodes:
-        if one.outcome in ("collision", "timeout"):
-            failed.setdefault((one.scenario, labels[one.behavior], one.outcome), []).append(one)
     heads = ["scenario", "policy", "outcome", "failed", "seeds"] + ["the first one again"] * (again is not None)
-    rows = [
-        [*key, str(len(own)), listed([str(one.seed) for one in own], MAX_SEEDS), *([again(own[0])] if again else [])]
-        for key, own in failed.items()
-    ]
+    rows = []
+    for row in result.rows:
+        for outcome, seeds in row.failed.items():
+            number, named = str(len(seeds)), listed([str(seed) for seed in seeds], MAX_SEEDS)
+            command = [again(row.scenario, row.behavior, seeds[0])] if again else []
+            rows.append([row.scenario, labels[row.behavior], outcome, number, named, *command])
     return (heads, rows) if rows else None
 
 

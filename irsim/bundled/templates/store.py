@@ -23,7 +23,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from irsim.common import data_files as resources
 from irsim.common.arguments import is_number
-from irsim.diagnostics.diagnostic import is_slip_of, nearest, suggestion
+from irsim.diagnostics.diagnostic import SLIP_SIMILARITY, nearest, suggestion
 from irsim.diagnostics.errors import CodedError
 from irsim.options.units import Value
 
@@ -185,8 +185,7 @@ def meant(path: str) -> str | None:
     if len(parts) > 1 and parts[-1] == "scenario.yaml":
         parts = parts[:-1]
     name = parts[-1].removesuffix(".yaml").removesuffix(".yml").lower() if parts else ""
-    near = nearest(name, names())
-    return near if near is not None and is_slip_of(name, near) else None
+    return nearest(name, names(), SLIP_SIMILARITY)
 
 
 def load(name: str) -> Template:

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.graphics.figure.canvas import Canvas, geometry_path, rgba
-from irsim.graphics.figure.dashes import SOLID, outline, pattern_of
+from irsim.graphics.figure.dashes import outline, pattern_of
+from irsim.graphics.scene.groups import ranges_between
 from irsim.graphics.scene.scene import (
     NO_CIRCLE,
+    SOLID,
     Circle,
     Group,
     Line,
@@ -170,9 +172,7 @@ def _batch_of_marks(marks: Sequence[Mark], closed: bool, points_per_metre: float
         sizes += [len(chunks[-1]) // max(many, 1)] * many
         radii += [shape.radius if isinstance(shape, Spots) else NO_CIRCLE] * many
         looks += [look] * many
-    ranges = np.zeros((len(sizes), 2), dtype=np.int64)
-    np.cumsum(sizes, out=ranges[:, 1])
-    ranges[1:, 0] = ranges[:-1, 1]
+    ranges = ranges_between(np.cumsum([0, *sizes]))
     points = np.concatenate(chunks, dtype=np.float64)
     inks, widths = _inks(looks), _widths(looks, points_per_metre)
     return Batch(points, ranges, np.array(radii, dtype=np.float64), closed, looks, points_per_metre, inks, widths)

@@ -7,9 +7,8 @@ import numpy as np
 from irsim.common.arrays import Floats
 from irsim.graphics.scene.scene import Line, Mark, Region, Stroke
 
-__all__ = ["SOLID", "outline", "pattern_of"]
+__all__ = ["outline", "pattern_of"]
 
-SOLID = ("-", "solid")
 MAX_DASHES = 2000
 """A line with more dashes is left to Matplotlib, which cuts it to the view first."""
 

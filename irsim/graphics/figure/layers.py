@@ -15,9 +15,8 @@ from matplotlib.transforms import Affine2D
 from irsim.common.arrays import Floats
 from irsim.graphics.figure.brush import Work, paint, prepare
 from irsim.graphics.figure.canvas import Box, Canvas, around, geometry_path, rgba, without_glow
-from irsim.graphics.figure.dashes import SOLID
 from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.scene import Beams, Dots, Group, Mark, Scene
+from irsim.graphics.scene.scene import SOLID, Beams, Dots, Group, Mark, Scene
 from irsim.graphics.scene.style import Color
 
 __all__ = [

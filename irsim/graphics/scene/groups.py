@@ -5,12 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import Pose
 from irsim.graphics.scene.scene import NO_CIRCLE, Group, Look
 
-__all__ = ["Outlines", "boxes_of", "circles", "kept", "placed_areas"]
+__all__ = ["Outlines", "boxes_of", "circles", "kept", "placed_areas", "ranges_between"]
+
+
+def ranges_between(ends: Sequence[int] | NDArray[np.int64]) -> NDArray[np.int64]:
+    """(N, 2) first and end of the points of each of N shapes that follow one another, from 0 and their ends (N + 1)."""
+    borders = np.asarray(ends, dtype=np.int64)
+    return np.stack([borders[:-1], borders[1:]], axis=1)
 
 
 def boxes_of(group: Group) -> Floats:
@@ -61,8 +68,7 @@ def placed_areas(
     x, y, heading = np.asarray(poses).T[:, :, None]
     across, up, c, s = corners[:, :, 0], corners[:, :, 1], np.cos(heading), np.sin(heading)
     points = np.stack([c * across - s * up + x, s * across + c * up + y], axis=2).reshape(-1, 2)
-    ends = np.arange(len(rings) + 1, dtype=np.int64) * corners.shape[1]
-    ranges = np.stack([ends[:-1], ends[1:]], axis=1)
+    ranges = ranges_between(np.arange(len(rings) + 1) * corners.shape[1])
     return [Group(part, zorder, True, numbers, points, ranges, np.full(len(rings), NO_CIRCLE), looks)]
 
 
@@ -81,8 +87,8 @@ def circles(
     """
     if not looks:
         return []
-    ends = np.arange(len(looks) + 1, dtype=np.int64)
-    return [Group(part, zorder, True, numbers, places, np.stack([ends[:-1], ends[1:]], axis=1), radii, looks)]
+    ranges = ranges_between(np.arange(len(looks) + 1))
+    return [Group(part, zorder, True, numbers, places, ranges, radii, looks)]
 
 
 class Outlines:
@@ -92,7 +98,7 @@ class Outlines:
         self._objects: list[int] = []
         self._points: list[tuple[float, float]] = []
         self._radii: list[float] = []
-        self._ends: list[int] = []
+        self._ends = [0]
 
     def add_circle(self, number: int, x: float, y: float, radius: float) -> None:
         """Add a circle of an object."""
@@ -112,8 +118,6 @@ class Outlines:
         """One group of everything for each part, zorder and looks; none without anything."""
         if not self._objects:
             return []
-        ranges = np.zeros((len(self._ends), 2), dtype=np.int64)
-        ranges[:, 1] = self._ends
-        ranges[1:, 0] = ranges[:-1, 1]
+        ranges = ranges_between(self._ends)
         points, radii = np.array(self._points, dtype=np.float64), np.array(self._radii)
         return [Group(part, z, True, self._objects, points, ranges, radii, looks) for part, z, looks in layers]

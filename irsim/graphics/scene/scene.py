@@ -103,6 +103,8 @@ MAX_COORDINATE_M = 1e7
 """Largest absolute coordinate of a region [m]."""
 MIN_REGION_SIDE_M = 1e-3
 """Smallest side of a region [m]."""
+SOLID = ("-", "solid")
+"""Styles of strokes without dashes."""
 
 
 @dataclass(slots=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 
 from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import Body, Pose, bounds, box, ellipse, place, point_on
-from irsim.graphics.scene.scene import Circle, Geometry, Label, Line, Mark, Scene, Sector, Stroke
+from irsim.graphics.scene.scene import SOLID, Circle, Geometry, Label, Line, Mark, Scene, Sector, Stroke
 from irsim.graphics.scene.style import TEXT_GAP_M, ObjectStyle, default_text_position
 from irsim.graphics.scene.tracks import GrowingLine, GrowingTrail, Track
 
@@ -135,9 +135,6 @@ def _trail_shape(body: Body, kind: str) -> Geometry:
     return body.geometry
 
 
-_SOLID = ("-", "solid")
-
-
 @dataclass(slots=True)
 class _Kept:
     """Kept for an object: its line or its trail, with their style and body and the number of states read."""
@@ -176,7 +173,7 @@ class Tracks:
         ):
             kept = self._kept[number] = _new(number, body, style)
         if style.show_trajectory and recorded > 1:
-            if style.keep_traj_length or style.traj_style not in _SOLID:
+            if style.keep_traj_length or style.traj_style not in SOLID:
                 scene.marks.append(trajectory_line(number, body, style, self._state.trajectory(row)))
             else:
                 kept.line.extend(trajectory_points(body, self._state.trajectory(row, kept.line_states)))

@@ -20,7 +20,7 @@ from irsim.graphics.scene.glyphs import (
     long_dart,
 )
 from irsim.graphics.scene.groups import Outlines, circles, placed_areas
-from irsim.graphics.scene.scene import Circle, Geometry, Group, Line, Look, Mark, Region, Stroke
+from irsim.graphics.scene.scene import SOLID, Circle, Geometry, Group, Line, Look, Mark, Region, Stroke
 from irsim.graphics.scene.theme import Shades, Theme, mix
 from irsim.rendering.modern.frame import stroke
 from irsim.rendering.modern.layout import Layout
@@ -33,7 +33,6 @@ _WALL_Z, _PERSON_Z, _HALO_Z, _ROBOT_Z = 1.5, 4.0, 4.28, 4.3
 _POINTS = 32
 _WHEEL = (0.22, 0.09)
 """Length and width of a wheel, as shares of the length of the body."""
-SOLID = ("-", "solid")
 MIN_WHEELED = 24.0
 """Least length of a body with wheels [u]."""
 

@@ -15,6 +15,7 @@ from irsim import _core as core
 from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import place
 from irsim.graphics.scene.glyphs import GOAL
+from irsim.graphics.scene.groups import ranges_between
 from irsim.graphics.scene.scene import NO_CIRCLE, Circle, Group, Look, Mark, Region, Spots, Stroke
 from irsim.graphics.scene.theme import Theme, mix
 from irsim.objects.drawing.object_marks import trajectory_points
@@ -178,8 +179,8 @@ def plan_groups(paths: Sequence[tuple[Thing, Floats]], layout: Layout) -> list[G
     looks: list[Look] = [
         (None, stroke(thing.shades.edge, layout.sizes.plan, _DASHES), _PLAN_ALPHA) for thing, _ in paths
     ]
-    ends = np.cumsum([0, *(len(path) for _, path in paths)])
-    ranges, points = np.stack([ends[:-1], ends[1:]], axis=1), np.concatenate([path for _, path in paths])
+    ranges = ranges_between(np.cumsum([0, *(len(path) for _, path in paths)]))
+    points = np.concatenate([path for _, path in paths])
     numbers = [thing.number for thing, _ in paths]
     return [Group("plan", _PLAN_Z, False, numbers, points, ranges, np.full(len(paths), NO_CIRCLE), looks)]
 

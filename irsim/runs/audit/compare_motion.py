@@ -7,10 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 from irsim.runs.audit.artifact import Artifact, Body
 from irsim.runs.audit.report import Report
-from irsim.runs.audit.strides import Strides, wrapped
+from irsim.runs.audit.strides import Strides
 
 __all__ = ["compare_limits", "compare_motion"]
 
@@ -57,7 +58,7 @@ def compare_motion(artifact: Artifact, strides: Strides, report: Report) -> None
         wanted, tolerance = _driven(artifact, body, row, strides)
         wanted[still] = pose[:-1][still]
         away = np.hypot(*(pose[1:, :2] - wanted[:, :2]).T)
-        turned = np.abs(wrapped(pose[1:, 2] - wanted[:, 2]))
+        turned = np.abs(wrap(pose[1:, 2] - wanted[:, 2]))
         wrong = there & ((away > tolerance) | (turned > tolerance))
         report.compared(int(there.sum()))
         what = "is not where its drive and its control take it"

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 from irsim.common.event_kinds import BETWEEN_STEPS
 from irsim.results.audit import AuditedRobot
@@ -17,7 +18,6 @@ from irsim.runs.audit.artifact import Artifact, Body
 from irsim.runs.audit.record import EventFacts, RobotFacts
 from irsim.runs.audit.report import Report
 from irsim.runs.audit.shapes import Shape, signed_gap
-from irsim.runs.audit.strides import wrapped
 
 __all__ = ["audited_robots", "compare_arrivals", "compare_result"]
 
@@ -105,7 +105,7 @@ def _distance(body: Body, pose: Floats, goal: Floats) -> float:
 def _distances(body: Body, pose: Floats, goal: Floats) -> Floats:
     turn = np.zeros(len(pose))
     if body.options.arrive_mode == "state":
-        turn = np.nan_to_num(wrapped(pose[:, 2] - goal[:, 2]))
+        turn = np.nan_to_num(wrap(pose[:, 2] - goal[:, 2]))
     distances: Floats = np.sqrt(((pose[:, :2] - goal[:, :2]) ** 2).sum(axis=1) + turn**2)
     return distances
 

@@ -6,18 +6,14 @@ import math
 
 import numpy as np
 
+from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 from irsim.runs.audit.artifact import Artifact
 
-__all__ = ["Strides", "wrapped"]
+__all__ = ["Strides"]
 
 _MAX_TURN = 6.0
 """Turn [rad] from which on the ends of an arc do not tell its radius."""
-
-
-def wrapped(angle: Floats) -> Floats:
-    """Angles in [-pi, pi) [rad]."""
-    return np.asarray((angle + np.pi) % (2 * np.pi) - np.pi)
 
 
 class Strides:
@@ -38,7 +34,7 @@ class Strides:
         before, after = artifact.pose[:-1], artifact.pose[1:]
         self._from = np.where(np.isnan(before[..., :1]), after, before)
         self._by = after[..., :2] - self._from[..., :2]
-        self.turn = self._turns(artifact, wrapped(after[..., 2] - self._from[..., 2]))
+        self.turn = self._turns(artifact, wrap(after[..., 2] - self._from[..., 2]))
         driven = np.array([body.drive is not None and not body.options.static for body in artifact.bodies], dtype=bool)
         exact = artifact.world.integration == "exact"
         self._arc = exact & driven & (self.turn != 0) & (np.abs(self.turn) < _MAX_TURN)

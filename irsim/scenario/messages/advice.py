@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -53,10 +54,11 @@ _MOST_NUMBERS = 4
 def vector_of(value: Any) -> list[float] | None:
     """The vector that a mapping such as ``{x: 9, y: 5}``, or a text such as ``9, 5``, means; None for other values."""
     if isinstance(value, str):
-        parts = value.strip("() ").replace(",", " ").split()
-        known = [read_number(part, None).value for part in parts] if 2 <= len(parts) <= _MOST_NUMBERS else []
-        numbers = [one for one in known if one is not None]
-        return [int(one) if one.is_integer() else one for one in numbers] if len(numbers) == len(parts) else None
+        parts = re.split(r",?\s+", value.strip("() "), maxsplit=_MOST_NUMBERS)  # "1,5" is one number
+        numbers = [one for part in parts if (one := read_number(part, None).value) is not None]
+        if not 2 <= len(numbers) == len(parts) <= _MOST_NUMBERS:
+            return None
+        return [int(one) if one.is_integer() else one for one in numbers]
     if not isinstance(value, Mapping) or not {"x", "y"} <= set(value):
         return None
     heading = [key for key in value if key in _HEADINGS]
