@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import imageio_ffmpeg
 import pytest
 from PIL import Image
 
@@ -47,6 +48,21 @@ def test_no_part_of_any_world(irsim: Run, room: Path) -> None:
 
 
 def test_films_need_no_display_and_no_ffmpeg_of_the_system(irsim: Run, room: Path, tmp_path: Path) -> None:
+    assert irsim("render", "room.yaml", "-o", "room.mp4", "--steps", "5").exit_code == 0
+    assert (tmp_path / "room.mp4").read_bytes()[4:8] == b"ftyp"
+
+
+def test_without_the_extra_the_ffmpeg_of_the_system_writes_films(
+    irsim: Run, room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    installed = Path(imageio_ffmpeg.get_ffmpeg_exe())
+    monkeypatch.setattr("irsim.graphics.encoding.video.find_spec", lambda name: None)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    refused = irsim("render", "room.yaml", "-o", "room.mp4", "--steps", "5", code=2)
+    assert "missing-extra" in refused.output
+    assert "pip install 'irsim-mcp[video]'" in refused.output
+    assert not (tmp_path / "room.mp4").exists()
+    (tmp_path / "ffmpeg").symlink_to(installed)
     assert irsim("render", "room.yaml", "-o", "room.mp4", "--steps", "5").exit_code == 0
     assert (tmp_path / "room.mp4").read_bytes()[4:8] == b"ftyp"
 

@@ -1,14 +1,17 @@
-"""Writes MP4 and other videos with ffmpeg (the program that the package imageio-ffmpeg includes)."""
+"""Writes MP4 and other videos with ffmpeg: the program that the package imageio-ffmpeg includes, or one on the path."""
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import tempfile
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib.util import find_spec
 from pathlib import Path
 from typing import BinaryIO, cast
 
+from irsim.common.extras import ExtraError
 from irsim.graphics.encoding.pixels import Pixels, even
 
 __all__ = ["VIDEO_OPTIONS", "VideoWriter"]
@@ -38,6 +41,9 @@ class VideoWriter:
         bitrate: Bits per second in the notation of ffmpeg (``2M``); replaces ``quality``.
         pixelformat: Pixel format of the video.
         input_params, output_params: Additional ffmpeg arguments, before and after its input.
+
+    Raises:
+        ExtraError: There is no ffmpeg.
     """
 
     def __init__(
@@ -56,6 +62,7 @@ class VideoWriter:
         codec = codec or _CODECS.get(suffix, "libx264")
         rate = ["-b:v", str(bitrate)] if bitrate is not None else _quality_arguments(codec, quality)
         start = ["-movflags", "+faststart"] if suffix in _FASTSTART_SUFFIXES else []
+        self._ffmpeg = _ffmpeg(suffix)
         self._before = ["-r", f"{fps:g}", *input_params]
         self._after = ["-an", "-c:v", codec, "-pix_fmt", pixelformat, *rate, *start, *output_params, "-y", str(path)]
         self._process: subprocess.Popen[bytes] | None = None
@@ -103,16 +110,31 @@ class VideoWriter:
         self._messages.close()
 
     def _start(self, width: int, height: int) -> subprocess.Popen[bytes]:
-        from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped]
-
         source = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{width}x{height}", *self._before, "-i", "-"]
-        command = [get_ffmpeg_exe(), "-hide_banner", "-loglevel", "error", *source, *self._after]
+        command = [self._ffmpeg, "-hide_banner", "-loglevel", "error", *source, *self._after]
         return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=self._messages)
 
     def _failure(self) -> RuntimeError:
         self._messages.seek(0)
         message = self._messages.read().decode(errors="replace").strip()
         return RuntimeError(f"the video encoder failed: {message or 'ffmpeg gave no reason'}")
+
+
+def _ffmpeg(suffix: str) -> str:
+    """The program: that of the package imageio-ffmpeg, which everybody can install, before one on the path.
+
+    Raises:
+        ExtraError: There is neither.
+    """
+    if find_spec("imageio_ffmpeg") is not None:
+        from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped]
+
+        return str(get_ffmpeg_exe())
+    found = shutil.which("ffmpeg")
+    if found is None:
+        fix = "install the extra: pip install 'irsim-mcp[video]'; or write a .gif, which needs none"
+        raise ExtraError("missing-extra", f"videos such as {suffix} need ffmpeg, which is not installed", fix)
+    return found
 
 
 def _quality_arguments(codec: str, quality: float) -> list[str]:
