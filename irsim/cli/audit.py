@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -25,6 +26,12 @@ __all__ = ["audit"]
 
 MAX_ROWS = 10
 """Differences, contacts within the tolerance and robots of each run that are shown."""
+
+
+_NAME_WIDTH = 16
+"""Width of the names of policies in a table that also has room for the rates in 80 columns [characters]."""
+_RATES = {"episodes": 8, "success": 7, "95 %": 16, "collision": 9, "time s": 6}
+"""Heading of a column of the leaderboard -> its width [characters]."""
 
 
 def audit(
@@ -111,30 +118,37 @@ def _files(given: Sequence[str]) -> dict[str, str]:
     return {name: file for name, _, file in pairs}
 
 
+def _table(first: str, min_width: int | None = None) -> Table:
+    """A table of whose columns only the first, with names, may become narrower than its content."""
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column(first, overflow="fold", min_width=min_width)
+    return table
+
+
 def _show(run: RunAudit, out: Console) -> None:
-    out.print(clean(run.summary, 600), soft_wrap=True, style="green" if run.equal else "bold red")
+    out.print(clean(run.summary, 600), style="green" if run.equal else "bold red")
     for check in run.checks:
         note = f" ({clean(check.note, 300)})" if check.note else ""
         count = f"{check.compared} values" if check.compared else ""
         odd = f", {check.differences} differ" if check.differences else ""
-        out.print(f"  {check.name}: {check.status.replace('_', ' ')} {count}{odd}{note}".rstrip(), soft_wrap=True)
+        out.print(f"  {check.name}: {check.status.replace('_', ' ')} {count}{odd}{note}".rstrip())
     for problem in run.problems:
         fix = f"; fix: {clean(problem.fix, 300)}" if problem.fix else ""
-        out.print(f"  {problem.code}: {clean(problem.path, 200)}{fix}", soft_wrap=True)
+        out.print(f"  {problem.code}: {clean(problem.path, 200)}{fix}")
     for finding in run.findings[:MAX_ROWS]:
         print_finding(finding, out)
     if run.finding_count > MAX_ROWS:
         out.print(f"  ... and {run.finding_count - MAX_ROWS} more differences")
     for near in run.within_tolerance[:MAX_ROWS]:
         pair = f"{clean(near.object, 40)} and {clean(near.partner, 40)} in step {near.step}"
-        out.print(f"  within tolerance: {pair}, {near.gap:.2g} m apart, {near.note}", soft_wrap=True)
+        out.print(f"  within tolerance: {pair}, {near.gap:.2g} m apart, {near.note}")
     if run.within_tolerance_count > MAX_ROWS:
         out.print(f"  ... and {run.within_tolerance_count - MAX_ROWS} more within the tolerance")
     if not run.robots:
         return
-    table = Table(box=None, pad_edge=False, header_style="dim")
-    for heading in ("robot", "outcome", "arrived s", "path m", "mean m/s", "clearance m", "contacts", "within steps"):
-        table.add_column(heading, overflow="fold")
+    table = _table("robot")
+    for heading in ("outcome", "arrived\ns", "path\nm", "mean\nm/s", "clearance\nm", "contacts", "within\nsteps"):
+        table.add_column(heading, no_wrap=True)
     for robot in run.robots[:MAX_ROWS]:
         numbers = (robot.time_to_goal, robot.path_length, robot.mean_speed, robot.min_clearance)
         cells = ("-" if number is None else f"{number:.4g}" for number in numbers)
@@ -147,49 +161,53 @@ def _show(run: RunAudit, out: Console) -> None:
         f"contacts nearer than {run.tolerance:g} m to touching are not decided; an overlap of more than "
         f"{max(run.unseen_depth, run.tolerance):.1g} m cannot have been missed between the poses that were looked at",
         style="dim",
-        soft_wrap=True,
     )
 
 
 def _show_submission(submission: SubmissionAudit, out: Console) -> None:
-    out.print(clean(submission.summary, 600), soft_wrap=True, style="green" if submission.equal else "bold red")
+    out.print(clean(submission.summary, 600), style="green" if submission.equal else "bold red")
     for problem in submission.problems[:MAX_ROWS]:
         given = "" if problem.given is None else f": given {clean(str(problem.given), 100)}"
         known = "" if problem.allowed is None else f", recomputed {clean(str(problem.allowed), 100)}"
         line = f"  {problem.code}: {clean(problem.path, 200)}: {clean(problem.message, 400)}{given}{known}"
-        out.print(line, soft_wrap=True)
+        out.print(line)
     if submission.problem_count > MAX_ROWS:
         out.print(f"  ... and {submission.problem_count - MAX_ROWS} more problems")
     if submission.problems:
-        out.print(f"  fix: {clean(submission.problems[0].fix or '', 300)}", soft_wrap=True)
+        out.print(f"  fix: {clean(submission.problems[0].fix or '', 300)}")
     for text in (*submission.not_replayed, *submission.notes):
-        out.print(f"  note: {clean(text, 400)}", soft_wrap=True, style="yellow")
+        out.print(f"  note: {clean(text, 400)}", style="yellow")
     if submission.engine:
         repeat = f"; --replay {submission.replayed} --salt {submission.salt} repeats it" if submission.salt else ""
         out.print(f"  engine {clean(submission.engine, 64)}{repeat}", soft_wrap=True, style="dim")
     if not submission.leaderboard:
         return
-    table = Table(title=submission.leaderboard[0].suite, box=None, pad_edge=False, header_style="dim")
-    again = ("run again",) if submission.salt else ()
-    for heading in ("scenes", "policy", "episodes", "success", "95 %", "collision", "time s", *again):
-        table.add_column(heading, overflow="fold")
-    for row in submission.leaderboard:
-        ends = "-" if row.low is None or row.high is None else f"{row.low:.1%} to {row.high:.1%}"
-        time = "-" if row.time_to_goal is None else f"{row.time_to_goal:.2f}"
-        cells = (
-            str(row.episodes),
-            f"{row.success:.1%}",
-            ends,
-            f"{row.collision:.1%}",
-            time,
-            *([str(row.replayed)] if again else []),
-        )
-        table.add_row(clean(row.scenes, 60), clean(row.policy, 40), *cells)
-    out.print(table)
+    _show_leaderboard(submission, out)
     if submission.unchecked:
         rows = f"{submission.unchecked} of {submission.episodes} rows behind these rates"
         text = f"{rows} are the submitter's word: no record has them, and this audit did not run them again"
-        out.print(f"{text}; --replay all runs every row", style="yellow", soft_wrap=True)
+        out.print(f"{text}; --replay all runs every row", style="yellow")
+
+
+def _show_leaderboard(submission: SubmissionAudit, out: Console) -> None:
+    """Print the rates of each policy, below the name of its scenes."""
+    out.print(clean(submission.leaderboard[0].suite, 200), style="italic")
+    again = ("run\nagain",) if submission.salt else ()
+    width = min(_NAME_WIDTH, max(len(clean(row.policy, 40)) for row in submission.leaderboard))
+    for number, (scenes, rows) in enumerate(groupby(submission.leaderboard, lambda row: row.scenes)):
+        table = _table("policy", min_width=width)
+        table.show_header = number == 0
+        for heading, least in _RATES.items():
+            table.add_column(heading, no_wrap=True, min_width=least)
+        for heading in again:
+            table.add_column(heading, no_wrap=True)
+        for row in rows:
+            ends = "-" if row.low is None or row.high is None else f"{row.low:.1%} to {row.high:.1%}"
+            time = "-" if row.time_to_goal is None else f"{row.time_to_goal:.2f}"
+            rates = (str(row.episodes), f"{row.success:.1%}", ends, f"{row.collision:.1%}", time)
+            table.add_row(clean(row.policy, 40), *rates, *([str(row.replayed)] if again else []))
+        out.print(clean(scenes, 60), style="bold")
+        out.print(table)
 
 
 def print_finding(finding: AuditFinding, out: Console) -> None:
@@ -198,7 +216,7 @@ def print_finding(finding: AuditFinding, out: Console) -> None:
     if finding.recorded is not None or finding.recomputed is not None:
         values = f": recorded {_value(finding.recorded)}, recomputed {_value(finding.recomputed)}"
         values += "" if finding.tolerance is None else f", tolerance {finding.tolerance:.2g}"
-    out.print(f"  {finding.code}: {clean(finding.message, 400)}{values}", soft_wrap=True)
+    out.print(f"  {finding.code}: {clean(finding.message, 400)}{values}")
 
 
 def _value(value: object) -> str:

@@ -54,7 +54,7 @@ def format_diagnostic(item: Diagnostic, lines: Sequence[str] = (), color: bool =
     if item.line is not None and 1 <= item.line <= len(lines):
         out += _quote_line(item, lines[item.line - 1], paint)
     else:
-        out.append(f"  {_printable(item.message)}")
+        out += [f"  {_printable(line)}" for line in item.message.split("\n")]
     advice = []
     if item.allowed:
         advice.append("allowed: " + _allowed_text(item.allowed) + _suggestion(item))

@@ -70,6 +70,27 @@ def test_a_submission_is_equal_and_has_a_leaderboard(written: Path) -> None:
         assert len(list(csv.DictReader(file))) == result.episodes
 
 
+def test_the_leaderboard_breaks_no_word_in_80_columns(written: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    audited = audit_all([written])
+    [row, *_] = audited.submissions[0].leaderboard
+    long = {"success": 1.0, "low": 1.0, "high": 1.0, "collision": 1.0, "time_to_goal": 123.45}
+    rows = [
+        row.model_copy(update={"scenes": scenes, "policy": policy, **long})
+        for scenes in ("corridor-social", "evacuation-of-a-long-name")
+        for policy in ("footprint_orca", "sarl_multi_robot")
+    ]
+    salted = audited.submissions[0].model_copy(update={"leaderboard": rows, "salt": "abc"})
+    shown = audited.model_copy(update={"submissions": [salted]})
+    monkeypatch.setattr("irsim.cli.audit.audit_all", lambda *_, **__: shown)
+    monkeypatch.setenv("COLUMNS", "80")
+    lines = CliRunner().invoke(app, ["audit", str(written)]).stdout.splitlines()
+    for name in ("footprint_orca", "sarl_multi_robot"):
+        told = [line for line in lines if line.startswith(name)]
+        assert len(told) == 2
+        assert all("100.0% to 100.0%" in line and "123.45" in line and len(line) <= 80 for line in told)
+    assert {"corridor-social", "evacuation-of-a-long-name"} <= {line.strip() for line in lines}
+
+
 def test_the_sample_is_decided_by_the_plan() -> None:
     episodes = [("a", "dash", seed) for seed in range(100)]
     chosen = sampled_episodes("1234", episodes)

@@ -210,3 +210,10 @@ robot: {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.2},
     printed = irsim("diff", "a.yaml", "b.yaml").stdout
     assert re.search(r"robot_0 pose  \[[\d., -]+\] -> \[", printed)
     assert not re.search(r"\d\.\d{4}", printed)
+
+
+def test_places_of_a_missing_file_are_a_list(irsim: Run, room: Path) -> None:
+    lines = irsim("validate", "rom.yaml", code=2).stdout.splitlines()
+    assert "  no scenario file 'rom.yaml'. Searched:" in lines
+    assert f"    {room.parent}" in lines
+    assert "  Did you mean 'room.yaml'?" in lines

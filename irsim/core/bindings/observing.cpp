@@ -1,6 +1,4 @@
 // Observation parts: over the rows of a simulation at once, and over arrays of what robots observed.
-#include <cstring>
-
 #include "bindings/observing.hpp"
 #include "learning/write_parts.hpp"
 #include "parallel.hpp"
@@ -27,10 +25,7 @@ void check_each(const State& state, const RowNumbers& rows) {
 Vec2 vector_at(const double* numbers, std::size_t k) { return {numbers[2 * k], numbers[2 * k + 1]}; }
 template <class Triple>
 Triple triple_at(const double* numbers, std::size_t k) {
-  static_assert(sizeof(Triple) == 3 * sizeof(double));
-  Triple out;
-  std::memcpy(&out, numbers + 3 * k, sizeof out);
-  return out;
+  return {numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]};
 }
 
 /// The input of a part without a simulation: the arrays of `irsim.policies.Observations`.
