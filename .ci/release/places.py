@@ -38,6 +38,8 @@ VERSION_PLACES = {
 OWNER_PLACES = {
     "server.json": (r'"name": "io\.github\.{}/irsim-mcp"',),
     "README.md": (r"<!-- mcp-name: io\.github\.{}/irsim-mcp -->", r"https://{}\.github\.io/"),
+    "irsim/common/data_files.py": (r"https://{}\.github\.io/",),
+    "schema/scenario.schema.json": (r'"\$id": "https://{}\.github\.io/',),
     ".github/CODEOWNERS": (r"^\* @{}$",),
 }
 """Files -> patterns of the lines with the owner."""

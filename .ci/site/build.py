@@ -75,6 +75,9 @@ def write_source(folder: Path) -> list[Page]:
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / name, target)
+    (folder / "schema").mkdir(exist_ok=True)
+    for path in sorted((ROOT / "schema").glob("*.json")):
+        shutil.copyfile(path, folder / "schema" / path.name)
     (folder / "pictures").mkdir()
     shutil.copyfile(ROOT / ".github" / "crossing.gif", folder / "pictures" / "crossing.gif")
     for name in templates.names():

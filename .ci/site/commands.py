@@ -9,7 +9,7 @@ from typing import Any
 import typer
 from pages import Page, anchor, cell, contents, link
 
-from irsim.cli.app import COMMANDS, app
+from irsim.cli.app import COMMANDS, FILES_RULE, app
 from irsim.lookup.answer import plain_table
 
 __all__ = ["command_pages", "commands"]
@@ -34,7 +34,7 @@ def command_pages() -> Iterator[Page]:
     rows = [(link(name, start, _path(name)), cell(_first(command))) for name, command in every.items()]
     about = (
         "Every command answers `--help`. The exit code is 0 if it finished, 1 if it could not finish and 2 if its "
-        "input is invalid."
+        f"input is invalid.\n\n{FILES_RULE}"
     )
     table = plain_table(("command", "what it does"), rows)
     listed = contents([page.path for page in pages if len(page.title.split()) == 2], hidden=True)

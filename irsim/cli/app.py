@@ -17,7 +17,7 @@ from irsim.cli.names import finished
 from irsim.cli.sentences import SENTENCES
 from irsim.common.installed import version
 
-__all__ = ["COMMANDS", "app", "loaded"]
+__all__ = ["COMMANDS", "FILES_RULE", "app", "loaded"]
 
 COMMANDS = {
     "demo": "demo:demo",
@@ -45,6 +45,11 @@ COMMANDS = {
     "skills": "skills:skills_app",
 }
 """Name of a command or of a group of commands -> module and name of what does it."""
+FILES_RULE = (
+    "Files that exist: pictures, films, HTML pages and schemas are made again, and the line then says 'replaced'. All "
+    "others, such as scenarios, maps, tables and policies, stay as they are unless --force is given."
+)
+"""What all commands do where the file to write exists."""
 PANELS = {
     "Start": ("demo", "templates", "new"),
     "Scenarios": ("validate", "diff", "render", "describe", "schema"),
@@ -116,7 +121,7 @@ app = typer.Typer(
     name="irsim",
     cls=Commands,
     help="Simulate 2D robot navigation: scenarios are YAML files.",
-    epilog="First steps: irsim demo, irsim new corridor-passing, irsim run corridor-passing.yaml",
+    epilog=f"First steps: irsim demo, irsim new corridor-passing, irsim run corridor-passing.yaml\n\n{FILES_RULE}",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",

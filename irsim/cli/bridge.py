@@ -21,7 +21,7 @@ from irsim.cli.bridge_likeness import compare_pedestrians, pedestrians_suite
 from irsim.cli.bridge_pedestrians import import_pedestrians
 from irsim.cli.guard import FAILED, handle_errors
 from irsim.cli.options import Json
-from irsim.cli.output import console, show_written
+from irsim.cli.output import console, existing, show_written
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import InputError
@@ -105,6 +105,7 @@ def import_bag(
     options = BagOptions(
         odom, scan, _mount(mount), resolution, radius, step_time, start, math.inf if end is None else end, range_max
     )
+    before = existing(out)
     converted = convert(bag, out, options, overwrite=force)
     if json_output:
         typer.echo(json.dumps(asdict(converted)))
@@ -112,7 +113,7 @@ def import_bag(
     what = f"{converted.poses} poses, {converted.duration:.1f} s" + (
         f", a map of {converted.scans} scans" if converted.map else ""
     )
-    show_written(converted.file, what)
+    show_written(converted.file, what, before=before)
     for note in converted.notes:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)
     console().print(Text.assemble("run it: ", (f"irsim run {converted.file}", "cyan")), soft_wrap=True)
@@ -137,9 +138,10 @@ def export_scene(
     force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
 ) -> None:
     """Write the start of a scenario as a stage of OpenUSD. For a whole run, see `irsim export --to usd`."""
+    before = existing(out)
     written = write(scenario, out, seed=seed, overwrite=force)
     size = written.stat().st_size / 1e3
-    show_written(written, f"{size:.0f} kB")
+    show_written(written, f"{size:.0f} kB", before=before)
 
 
 bridge_app.command("doctor")(handle_errors(doctor))

@@ -19,7 +19,7 @@ from irsim.bridges.pedestrians.comparison import compare_pedestrians as compare
 from irsim.bridges.pedestrians.imitation import GOALS, RADIUS
 from irsim.bridges.pedestrians.published import RECORDINGS, write_pedestrians_suite
 from irsim.cli.options import Json
-from irsim.cli.output import console, progress, show_written
+from irsim.cli.output import console, existing, progress, show_written
 from irsim.scenario.behavior_override import split_behaviors
 
 __all__ = ["compare_pedestrians", "pedestrians_suite"]
@@ -84,12 +84,13 @@ def pedestrians_suite(
 ) -> None:
     """Write the suite pedestrians_v1, in which a robot crosses the people of three recordings that you have."""
     files = dict(zip(RECORDINGS, (eth, hotel, zara01), strict=True))
+    before = existing(out)
     made = write_pedestrians_suite(files, out, overwrite=force)
     if json_output:
         typer.echo(json.dumps(asdict(made)))
         return
     windows = ", ".join(f"{count} of {name} ({made.lengths[name]:g} s)" for name, count in made.windows.items())
-    show_written(made.file, f"suite hash {suite_plan(made.file).suite_hash}; windows: {windows}")
+    show_written(made.file, f"suite hash {suite_plan(made.file).suite_hash}; windows: {windows}", before=before)
     if made.other:
         what = (
             f"{' and '.join(made.other)}: not the files of the published results (SHA-256), so its numbers are others"

@@ -17,7 +17,7 @@ from irsim.bridges.pedestrians.scenario import Layout
 from irsim.bridges.pedestrians.suite import Episodes
 from irsim.bridges.pedestrians.tracks import FORMATS, Window
 from irsim.cli.options import Json
-from irsim.cli.output import console, show_written
+from irsim.cli.output import console, existing, show_written
 from irsim.common.text import plural
 from irsim.diagnostics.errors import InputError
 
@@ -126,6 +126,7 @@ def import_pedestrians(
     layout = Layout(
         file.name, radius=radius, interpolation="cubic" if smooth else "linear", robot=robot and into is None, **given
     )
+    before = existing(out, suite)
     converted = convert(
         file,
         out,
@@ -149,10 +150,10 @@ def import_pedestrians(
         where = "" if converted.into is None else f" in {Path(converted.into).name}"
         people = plural(converted.pedestrians, "pedestrian")
         what = f"{people}{where}, {converted.rows} recorded places, {converted.duration:g} s"
-        show_written(converted.file, what)
+        show_written(converted.file, what, before=before)
     if converted.suite is not None:
         what = f"{len(converted.windows)} windows of {converted.length:g} s, 10 seeds each"
-        show_written(converted.suite, what)
+        show_written(converted.suite, what, before=before)
     for note in converted.notes:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)
     if converted.file is not None:

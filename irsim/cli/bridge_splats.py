@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,7 +15,7 @@ from irsim.bridges.export.registry import chosen_options
 from irsim.bridges.splats.page import write_page
 from irsim.bridges.splats.preview import PreviewOptions, write_preview
 from irsim.cli.options import Json
-from irsim.cli.output import console, progress, show_written
+from irsim.cli.output import console, existing, progress, show_written
 from irsim.policies.converters.convert import parse_options
 
 __all__ = ["page", "preview"]
@@ -62,12 +63,13 @@ def preview(
     map says that was imported from it; frame=habitat_yup does without.
     """
     given = {"view": view.value, **parse_options(options or [])}
+    before = existing(out)
     with progress("drawing") as report:
         chosen = chosen_options(PreviewOptions, given, "a preview")
         result = write_preview(scene, run, out, options=chosen, robot=robot, step=step, progress=report)
     first, last = result.steps
     what = "1 picture" if result.frames == 1 else f"{result.frames} pictures"
-    _show(result.as_dict(), f"{what} of {result.splats:,} splats, steps {first} to {last}", json_output)
+    _show(result.as_dict(), f"{what} of {result.splats:,} splats, steps {first} to {last}", json_output, before)
 
 
 def page(
@@ -86,14 +88,15 @@ def page(
     frame, sidecar.
     """
     chosen = chosen_options(PoseOptions, parse_options(options or []), "a page")
+    before = existing(out)
     result = write_page(scene, run, out, options=chosen, max_splats=max_splats)
-    _show(result.as_dict(), f"{result.bytes / 1e6:.1f} MB: {result.splats:,} splats", json_output)
+    _show(result.as_dict(), f"{result.bytes / 1e6:.1f} MB: {result.splats:,} splats", json_output, before)
 
 
-def _show(result: dict[str, Any], facts: str, json_output: bool) -> None:
+def _show(result: dict[str, Any], facts: str, json_output: bool, before: Collection[str]) -> None:
     if json_output:
         typer.echo(json.dumps(result, indent=2))
         return
-    show_written(result["file"], facts)
+    show_written(result["file"], facts, before=before)
     for note in result["notes"]:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)

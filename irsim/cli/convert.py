@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from irsim.cli.output import show_written
+from irsim.cli.output import existing, show_written
+from irsim.common.files import check_new
 from irsim.policies.converters.convert import convert_policy, parse_options
 
 __all__ = ["convert", "export_policy"]
@@ -31,15 +32,18 @@ def convert(
             show_default=False,
         ),
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
 ) -> None:
     """Make a policy file of weights that others trained with PyTorch; no code of their file runs, and no torch.
 
     The file may be a state dictionary or a whole module, in both formats of torch.save. Tensors are found by their
     names and shapes; the message names what is missing.
     """
+    check_new(out, overwrite=force)
+    before = existing(out)
     network = convert_policy(kind, file, out, parse_options(options or []))
     parameters = sum(array.size for array in network.arrays.values())
-    show_written(out, f"{parameters:,} parameters")
+    show_written(out, f"{parameters:,} parameters", before=before)
     typer.echo(f"try it: irsim run SCENARIO --policy {out}")
 
 
@@ -52,15 +56,19 @@ def export_policy(
     description: Annotated[
         str, typer.Option("--description", help="A sentence about the policy; default: the title.")
     ] = "",
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the file and its card if they exist.")] = False,
 ) -> None:
     """Make a policy file of a training, with its model card and curve; needs the extra `learn`.
 
     irsim runs .npz files with NumPy alone, without torch. An .onnx file is for other programs and takes the extra
     `onnx`.
     """
+    for made in (out, out.with_suffix(".md")):
+        check_new(made, overwrite=force)
+    before = existing(out)
     from irsim.learning.training.export import export_policy as export
 
     file = export(training, out, license=license, description=description)
     card, curve = file.with_suffix(".md"), file.with_suffix(".png")
-    show_written([str(one) for one in (file, card, curve)])
+    show_written([str(one) for one in (file, card, curve)], before=before)
     typer.echo(f"try it: irsim run SCENARIO --policy {file}")

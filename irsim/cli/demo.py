@@ -11,7 +11,7 @@ from rich.text import Text
 from irsim import api
 from irsim.bundled import templates
 from irsim.cli.options import Json
-from irsim.cli.output import console, print_json, progress
+from irsim.cli.output import console, existing, print_json, progress
 from irsim.cli.run import show_result
 from irsim.common.files import check_suffix
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
@@ -30,6 +30,7 @@ def demo(
     json_output: Json = False,
 ) -> None:
     """Simulate a bundled scenario and write an animation of it to the current directory."""
+    before = existing(out)
     with progress("simulating and drawing") as report:
         check_suffix(out, MOVING_SUFFIXES)
         result = api.run(templates.scenario_file(_TEMPLATE), seed=seed, save=out, progress=report)
@@ -38,7 +39,7 @@ def demo(
         return
     shown = console()
     shown.print(templates.load(_TEMPLATE).purpose)
-    show_result(result, shown, again=f"irsim demo --seed {seed}")
+    show_result(result, shown, again=f"irsim demo --seed {seed}", before=before)
     shown.print(
         Text.assemble("next: ", (f"irsim new {_TEMPLATE} && irsim run {_TEMPLATE}.yaml", "cyan")), soft_wrap=True
     )

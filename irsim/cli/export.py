@@ -12,7 +12,7 @@ from irsim.bridges.export.export import export_run
 from irsim.bridges.export.registry import format_names
 from irsim.cli.guard import again, going_on
 from irsim.cli.options import Json
-from irsim.cli.output import console, print_json, progress, show_written, size_text
+from irsim.cli.output import console, existing, print_json, progress, show_written, size_text
 from irsim.common.text import plural
 from irsim.policies.converters.convert import parse_options
 
@@ -83,6 +83,7 @@ def export(
     chosen: str | list[str] | None = objects
     if objects is not None and objects not in CHOICES:
         chosen = [name.strip() for name in objects.split(",") if name.strip()]
+    before = existing(out)
     with going_on(lambda: f"nothing was written; again: {again()}"), progress("exporting") as report:
         result = export_run(
             runs or ["last"],
@@ -100,6 +101,6 @@ def export(
     size = size_text(result.bytes)
     count = f"{len(result.run_ids)} runs, " if len(result.run_ids) > 1 else ""
     who = plural(len(result.objects), "object")
-    show_written(result.file, f"{size}: {count}{who}, {result.steps} steps")
+    show_written(result.file, f"{size}: {count}{who}, {result.steps} steps", before=before)
     for note in result.notes:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)

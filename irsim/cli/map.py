@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+from collections.abc import Collection
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -18,7 +19,7 @@ from irsim.bridges.maps.ros_server import export_map
 from irsim.cli.findings import import_user_modules
 from irsim.cli.guard import again, going_on, handle_errors
 from irsim.cli.options import File, Imports, Json, Seed
-from irsim.cli.output import console, print_json, show_written
+from irsim.cli.output import console, existing, print_json, show_written
 from irsim.diagnostics.errors import InputError
 
 if TYPE_CHECKING:
@@ -65,16 +66,17 @@ def export(
     """Write the map of a scenario for the ROS map server: a YAML file and a picture."""
     import_user_modules(imports)
     resolved, _ = api.read_scenario(scenario, strict=False)
+    before = existing(out)
     files = export_map(resolved, out, mode=mode.value, image=image.value, seed=seed, overwrite=force)
-    _show(files, json_output)
+    _show(files, json_output, before)
 
 
-def _show(written: MapFiles, json_output: bool) -> None:
+def _show(written: MapFiles, json_output: bool, before: Collection[str]) -> None:
     if json_output:
         typer.echo(json.dumps(written.as_dict(), indent=2))
         return
     size = f"{written.columns} x {written.rows} cells of {written.resolution:g} m, {written.occupied:,} occupied"
-    show_written(written.files, size)
+    show_written(written.files, size, before=before)
 
 
 class Unknown(str, Enum):
@@ -264,6 +266,7 @@ def import_(
         "root": root,
         "layers": tuple(layer) if layer else None,
     }
+    before = existing(out)
     with going_on(lambda: f"nothing was written; again: {again()}"):
         if list_levels:
             result = only_list(file, **options)
@@ -276,7 +279,7 @@ def import_(
     if json_output:
         print_json(result)
     else:
-        _show_import(result, out, robot)
+        _show_import(result, out, robot, before)
 
 
 def _numbers(text: str, what: str, count: int, example: str) -> tuple[float, ...]:
@@ -289,7 +292,7 @@ def _numbers(text: str, what: str, count: int, example: str) -> tuple[float, ...
     return numbers
 
 
-def _show_import(result: MapImportResult, out: Path | None, robot: bool) -> None:
+def _show_import(result: MapImportResult, out: Path | None, robot: bool, before: Collection[str]) -> None:
     shown = console()
 
     def line(*parts: Any) -> None:
@@ -299,7 +302,7 @@ def _show_import(result: MapImportResult, out: Path | None, robot: bool) -> None
     if result.obstacles:
         cells = f"{result.obstacles:,} obstacle{'s' * (result.obstacles != 1)}; as a map {cells}"
     if result.files:
-        show_written(result.files, cells)
+        show_written(result.files, cells, before=before)
     else:
         line(cells)
     for one in result.levels:

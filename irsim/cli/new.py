@@ -13,7 +13,7 @@ from irsim import api
 from irsim.bundled import templates
 from irsim.cli.findings import print_findings
 from irsim.cli.guard import INVALID
-from irsim.cli.output import console, show_written
+from irsim.cli.output import console, existing, show_written
 from irsim.common.files import write_new
 from irsim.scenario.yaml.modeline import with_modeline
 
@@ -50,8 +50,9 @@ def new(
         typer.echo(text, nl=False)
         return
     target = out or Path(f"{name}.yaml")
+    before = existing(target)
     write_new(target, with_modeline(text, target), overwrite=force)
     shown = console()
-    show_written(target)
+    show_written(target, before=before)
     shown.print(f"{template.purpose} {template.prospect(given)}")
     shown.print(Text.assemble("next: ", (shlex.join(["irsim", "run", str(target)]), "cyan")), soft_wrap=True)

@@ -6,7 +6,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = [
     "OUTCOME_COLORS",
     "console",
+    "existing",
     "has_colors",
     "is_terminal",
     "prepare_streams",
@@ -107,12 +108,20 @@ def print_json(model: BaseModel, *, line: bool = False) -> None:
     sys.stdout.write(model.model_dump_json(indent=indent) + "\n")
 
 
-def show_written(files: str | Path | Sequence[str], about: str = "", *, stderr: bool = False) -> None:
+def existing(*files: str | Path | None) -> frozenset[str]:
+    """The files of these names that exist now, before a command replaces them, for :func:`show_written`."""
+    return frozenset(os.path.abspath(file) for file in files if file is not None and os.path.isfile(file))
+
+
+def show_written(
+    files: str | Path | Sequence[str], about: str = "", *, before: Collection[str] = (), stderr: bool = False
+) -> None:
     """Print the paths of written files as all commands do, in one line that is never broken: ``wrote hall.gif (…)``.
 
     Args:
         files: One file or folder, or several; names below the current directory are shortened.
         about: Their content; default: the size of the files.
+        before: Result of :func:`existing` before they were written; where it has one, the line says ``replaced``.
         stderr: Print to standard error instead of standard output.
     """
     from rich.text import Text
@@ -123,7 +132,8 @@ def show_written(files: str | Path | Sequence[str], about: str = "", *, stderr: 
     out = console(stderr=stderr)
     if not about and all(map(os.path.isfile, names)):
         about = size_text(sum(map(os.path.getsize, names)))
-    out.print(Text.assemble("wrote ", (shown, "bold"), f" ({about})" if about else ""), soft_wrap=True)
+    verb = "replaced" if any(os.path.abspath(name) in before for name in names) else "wrote"
+    out.print(Text.assemble(f"{verb} ", (shown, "bold"), f" ({about})" if about else ""), soft_wrap=True)
 
 
 def size_text(size: int) -> str:

@@ -13,7 +13,7 @@ from irsim.api.overlays import OVERLAYS
 from irsim.api.render_run import render_run
 from irsim.cli.findings import import_user_modules, limits_for, print_warnings
 from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Strict
-from irsim.cli.output import console, print_json, progress, show_written
+from irsim.cli.output import console, existing, print_json, progress, show_written
 from irsim.common.files import check_suffix
 from irsim.diagnostics.errors import InputError
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, PICTURE_FORMATS
@@ -84,6 +84,7 @@ def render(
     `--verbose` and `--json` add a table of its objects: drives, footprints, places, and the ranges of what is random.
     """
     import_user_modules(imports)
+    before = existing(out)
     with progress("drawing") as report:
         check_suffix(out, [*PICTURE_FORMATS, *MOVING_SUFFIXES])
         shown_as: dict[str, Any] = {
@@ -107,7 +108,7 @@ def render(
     frames = f", {result.frames} frames" if result.frames > 1 else ""
     width, height = result.size
     for written in result.files:
-        show_written(written, f"{width} x {height} px{frames}, step {result.steps}")
+        show_written(written, f"{width} x {height} px{frames}, step {result.steps}", before=before)
     if result.ended is not None:
         shown.print(f"step {result.steps} is beyond the end of the episode, which is step {result.ended}")
     if result.view is not None:

@@ -9,8 +9,9 @@ from typing import Annotated
 import typer
 
 from irsim.cli.options import Json
-from irsim.cli.output import console, print_json, progress, show_written, size_text
+from irsim.cli.output import console, existing, print_json, progress, show_written, size_text
 from irsim.runs.files import RunError
+from irsim.runs.reading import open_run
 from irsim.runs.replay.export import replay as write
 
 __all__ = ["replay"]
@@ -36,8 +37,11 @@ def replay(
     """
     if file is not None and out is not None:
         raise RunError("bad-argument", f"two output files are given, '{file}' and '{out}'", "give one file")
+    opened = open_run(run)
+    target = out or file or Path(f"{opened.id}.html")
+    before = existing(target)
     with progress("packing"):
-        result = write(run, out or file)
+        result = write(opened, target)
     if show:
         webbrowser.open(Path(result.file).resolve().as_uri())
     if json_output:
@@ -45,6 +49,6 @@ def replay(
         return
     thinned = f", every {result.every} steps" if result.every > 1 else ""
     size = size_text(result.bytes)
-    show_written(result.file, f"{size}, steps 0 to {result.last_step}{thinned}")
+    show_written(result.file, f"{size}, steps 0 to {result.last_step}{thinned}", before=before)
     for note in result.notes:
         console().print(f"note: {note}", style="yellow")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+from collections.abc import Collection
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
@@ -17,7 +18,7 @@ from irsim import api, studio
 from irsim.cli.findings import import_user_modules, limits_for, print_warnings
 from irsim.cli.guard import FAILED, ended_in_order
 from irsim.cli.options import File, Imports, Json, MaxObjects, Perturb, Seed, Steps, Strict, Until
-from irsim.cli.output import OUTCOME_COLORS, console, print_error, print_json, progress, show_written
+from irsim.cli.output import OUTCOME_COLORS, console, existing, print_error, print_json, progress, show_written
 from irsim.cli.run_seeds import run_all
 from irsim.common.files import check_suffix
 from irsim.common.text import clean, seconds
@@ -164,6 +165,7 @@ def run(
     if show:
         _mention_missing_screen()
     window = _window(watch=watch, show=show, speed=speed, port=port, no_browser=no_browser)
+    before = existing(save_gif, *(export or ()))
     with ended_in_order(), window or nullcontext():
         with progress("simulating" if save_gif is None else "simulating and drawing") as report:
             if save_gif is not None:
@@ -187,7 +189,7 @@ def run(
             print_json(result)
         else:
             print_warnings(result.warnings, file)
-            show_result(result, console())
+            show_result(result, console(), before=before)
         if window is not None:
             window.end(result)
             sys.stdout.flush()
@@ -217,13 +219,14 @@ def _window(
     return studio.Window(partial(typer.echo, err=True), port=port or 0, browser=not no_browser, speed=speed)
 
 
-def show_result(result: RunResult, out: Console, again: str | None = None) -> None:
+def show_result(result: RunResult, out: Console, again: str | None = None, before: Collection[str] = ()) -> None:
     """Print how an episode ended.
 
     Args:
         result: Result of :func:`irsim.run`.
         out: Console to print to.
         again: Command that reproduces the episode; default: the one in the result.
+        before: Files that existed before the run.
     """
     if result.robots:
         out.print(_table(result))
@@ -242,7 +245,7 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     horizon = f"{seconds(result.time_limit)} ({limit[result.time_limit_from]})"
     out.print(f"{result.steps} steps, {seconds(result.sim_time)} of simulated time; time limit {horizon}")
     for written in result.files:
-        show_written(written)
+        show_written(written, before=before)
     if result.run_id is not None:
         folder = Path(next(iter(result.artifacts.values()))).parent
         name = result.run_id if folder.parent.parent.name == ".irsim" else shlex.quote(str(folder))

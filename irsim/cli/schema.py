@@ -9,7 +9,7 @@ import typer
 
 from irsim.benchmarks.suite import SUITES
 from irsim.cli.guard import FAILED
-from irsim.cli.output import show_written
+from irsim.cli.output import existing, show_written
 from irsim.common import data_files as resources
 from irsim.common.files import write_atomically
 from irsim.diagnostics.errors import ScenarioError
@@ -42,7 +42,12 @@ def schema(
     ] = None,
     scenario: Annotated[
         Path | None,
-        typer.Option("--mark", metavar="FILE", help="Add a first line to FILE with which editors find the schema."),
+        typer.Option(
+            "--mark",
+            metavar="FILE",
+            help="Have editors read the schema of this installation for FILE, without a network, by its first line; "
+            "`irsim new` writes the published address, which holds on any machine.",
+        ),
     ] = None,
 ) -> None:
     """Write the JSON Schemas of scenarios, suites, tasks and networks, or connect a scenario file to its schema."""
@@ -80,12 +85,12 @@ def is_current(target: Path, text: str, check: bool, command: str) -> bool:
     if not current:
         typer.echo(f"{target} is out of date: run {command} to update it", err=True)
         return False
-    if not check:
-        write_atomically(target, text)
     if check:
         typer.echo(f"{target} is up to date")
     else:
-        show_written(target)
+        before = existing(target)
+        write_atomically(target, text)
+        show_written(target, before=before)
     return True
 
 
@@ -97,7 +102,7 @@ def _connect(scenario: Path) -> None:
     target = Path(str(document.path))
     with target.open(encoding="utf-8", newline="") as file:
         before = file.read()
-    after = with_modeline(before, target)
+    after = with_modeline(before, target, installed=True)
     if after != before:
         write_atomically(target, after)
-    typer.echo(f"{target}: editors find the schema at {schema_reference(target)}")
+    typer.echo(f"{target}: editors find the schema at {schema_reference(target, installed=True)}")

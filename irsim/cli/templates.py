@@ -12,7 +12,7 @@ from rich.table import Table
 from irsim.api.take_snapshot import snapshot
 from irsim.bundled.templates import find, scenario_file
 from irsim.cli.options import Json
-from irsim.cli.output import console, show_written
+from irsim.cli.output import console, existing, show_written
 from irsim.common.files import check_suffix
 from irsim.graphics.encoding.contact_sheet import contact_sheet
 
@@ -39,7 +39,8 @@ def templates(
     if sheet is not None:
         steps = [(template.name, scenario_file(template.name)) for template in matching]
         pictures = ((name, snapshot(path, seed=1, steps=_SHEET_STEPS, overlays=_OVERLAYS).png) for name, path in steps)
-        show_written(contact_sheet(pictures, sheet), stderr=json_output)
+        before = existing(sheet)
+        show_written(contact_sheet(pictures, sheet), before=before, stderr=json_output)
         if not json_output:
             return
     if json_output:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-__all__ = ["checkout", "read_yaml", "schema_file", "skills_directory", "templates_directory"]
+__all__ = ["checkout", "published_schema", "read_yaml", "schema_file", "skills_directory", "templates_directory"]
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -28,6 +28,11 @@ def templates_directory() -> Path:
 def schema_file(of: str = "scenario") -> Path:
     """The JSON Schema of scenario files, or of files of another kind."""
     return (checkout() or _PACKAGE / "_bundled") / "schema" / f"{of}.schema.json"
+
+
+def published_schema(of: str = "scenario") -> str:
+    """The address at which the site has that schema, which files name in their first line and keep when they move."""
+    return f"https://irsim.github.io/irsim/latest/schema/{of}.schema.json"
 
 
 def skills_directory() -> Path:

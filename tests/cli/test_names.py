@@ -182,7 +182,28 @@ def test_written_paths_are_printed_in_one_way(irsim: Run, room: Path, tmp_path: 
         assert [re.sub(r" \(.*\)$", "", line) for line in said] == [f"wrote {name}"], words
         assert (tmp_path / name).is_file()
     again = irsim("run", "room.yaml", "--save-gif", "c.gif", "--steps", "2", code=0).stdout
-    assert re.search(r"^wrote c\.gif \([\d.]+ [kM]B\)$", again, re.MULTILINE)
+    assert re.search(r"^replaced c\.gif \([\d.]+ [kM]B\)$", again, re.MULTILINE)
+    kept = {"corridor-passing.yaml", "d.csv"}
+    for words, name in written.items():
+        before = (tmp_path / name).stat().st_mtime_ns
+        if name in kept:
+            assert "--force" in irsim(*words, code=2).stderr
+            assert (tmp_path / name).stat().st_mtime_ns == before
+            words = (*words, "--force")
+        shown = irsim(*words, code=0).stdout
+        assert re.search(rf"^replaced {re.escape(name)}\b", shown, re.MULTILINE), shown
+        assert (tmp_path / name).stat().st_mtime_ns > before
+
+
+def test_the_demo_replaces_its_film_and_says_so(irsim: Run) -> None:
+    for verb in ("wrote", "replaced"):
+        assert f"\n{verb} irsim-demo.gif (" in irsim("demo", code=0).stdout
+
+
+def test_the_help_has_the_rule_for_files_that_exist(irsim: Run) -> None:
+    shown = " ".join(irsim("--help", code=0).stdout.split())
+    assert "pictures, films, HTML pages and schemas are made again" in shown
+    assert "stay as they are unless --force is given" in shown
 
 
 def test_a_picture_is_told_in_two_lines(irsim: Run, room: Path) -> None:

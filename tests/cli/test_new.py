@@ -26,7 +26,9 @@ def test_writes_a_file_that_runs(irsim: Run, tmp_path: Path) -> None:
 def test_the_first_line_leads_editors_to_the_schema(irsim: Run, tmp_path: Path) -> None:
     irsim("new", "empty-room", "-o", "a b.yaml")
     first = (tmp_path / "a b.yaml").read_text(encoding="utf-8").splitlines()[0]
-    assert first == f"# yaml-language-server: $schema={resources.schema_file().resolve().as_uri()}"
+    assert first == f"# yaml-language-server: $schema={resources.published_schema()}"
+    schema = json.loads(resources.schema_file().read_text(encoding="utf-8"))
+    assert schema["$id"] == resources.published_schema()
 
 
 def test_never_overwrites_unless_told_to(irsim: Run, tmp_path: Path) -> None:

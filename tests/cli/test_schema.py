@@ -46,7 +46,8 @@ def test_inside_the_checkout_the_path_is_relative(monkeypatch: pytest.MonkeyPatc
     root = resources.checkout()
     assert root is not None
     assert schema_reference(root / "templates" / "x" / "y.yaml") == "../../schema/scenario.schema.json"
-    assert schema_reference(tmp_path / "y.yaml").startswith("file:///")
+    assert schema_reference(tmp_path / "y.yaml").startswith("https://")
+    assert schema_reference(tmp_path / "y.yaml", installed=True).startswith("file:///")
 
 
 def test_an_earlier_line_is_replaced() -> None:

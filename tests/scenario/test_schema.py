@@ -15,10 +15,10 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from irsim.common.data_files import published_schema
 from irsim.common.yaml.compose import compose
 from irsim.options import registry
 from irsim.scenario.limits import DEFAULT_LIMITS
-from irsim.scenario.model import json_schema as schema_module
 from irsim.scenario.model.json_schema import INEXPRESSIBLE, check, json_schema, schema_text
 from irsim.scenario.read import read
 from tests.effort import examples
@@ -101,7 +101,7 @@ def test_names_registered_by_user_code_are_part_of_it(monkeypatch: pytest.Monkey
 
 def test_reasons_are_given() -> None:
     assert all(reason for reason in INEXPRESSIBLE.values())
-    assert schema_module.SCHEMA_ID in schema_text()
+    assert published_schema() in schema_text()
     assert all(reason in json_schema()["$comment"] for reason in INEXPRESSIBLE.values())
 
 

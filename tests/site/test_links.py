@@ -9,6 +9,7 @@ from urllib.parse import unquote
 
 import pytest
 
+from irsim.common.data_files import published_schema, schema_file
 from tests.site.pages import read_pages
 
 pytestmark = [pytest.mark.site, pytest.mark.one_python]
@@ -41,6 +42,11 @@ def test_the_readme_leads_to_pages_of_the_site(html: Path) -> None:
     paths = re.findall(r"\]\(https://[^/]+\.github\.io/irsim/latest/([^)]+)\)", text)
     assert len(paths) >= 4
     assert [path for path in paths if not (html / path).is_file()] == []
+
+
+def test_scenarios_name_a_schema_of_the_site(html: Path) -> None:
+    path = published_schema().partition("/latest/")[2]
+    assert (html / path).read_bytes() == schema_file().read_bytes()
 
 
 def test_pictures_and_players_are_there(html: Path) -> None:

@@ -7,13 +7,13 @@ import os
 from collections.abc import Callable
 from typing import Any
 
+from irsim.common.data_files import published_schema
 from irsim.common.json_output import schema_of_file
 from irsim.options.base import SCHEMA_PARTS, SchemaParts
 from irsim.scenario.model.scenario import Scenario
 
-__all__ = ["INEXPRESSIBLE", "SCHEMA_ID", "check", "json_schema", "schema_text"]
+__all__ = ["INEXPRESSIBLE", "check", "json_schema", "schema_text"]
 
-SCHEMA_ID = "https://irsim.dev/schema/scenario.schema.json"
 
 INEXPRESSIBLE: dict[str, str] = {
     "yaml-syntax": "the text is not valid YAML, so there is no data to validate",
@@ -73,7 +73,7 @@ def json_schema(*, user_code: bool = True) -> dict[str, Any]:
     }
     rules = "; ".join(f"{name}: {why}" for name, why in INEXPRESSIBLE.items())
     schema = {
-        "$id": SCHEMA_ID,
+        "$id": published_schema(),
         "title": "irsim scenario",
         "description": "A scenario of the robot-navigation simulator irsim: a world with robots and obstacles in it.",
         "$comment": f"Written by 'irsim schema'. It does not express: {rules}.",

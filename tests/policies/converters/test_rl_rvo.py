@@ -188,9 +188,15 @@ def test_the_command_converts_and_says_what_is_wrong(file: Path, tmp_path: Path)
         (["rl_rvo", str(file), "--set", "acceler"], "is not an option"),
         (["rl_rvo", str(tmp_path)], "it is a folder, not a file"),
     ):
-        failed = runner.invoke(app, ["convert", *arguments, "-o", str(out)])
+        failed = runner.invoke(app, ["convert", *arguments, "-o", str(out), "--force"])
         assert (failed.exit_code, out.read_bytes(), "Traceback" in failed.output) == (2, b"kept", False)
         assert message.lower() in failed.output.replace("\n", " ").lower()
+    convert = ["convert", "rl_rvo", str(file), "-o", str(out)]
+    refused = runner.invoke(app, convert)
+    assert (refused.exit_code, out.read_bytes()) == (2, b"kept")
+    assert "exists" in refused.output
+    assert "--force" in refused.output
+    assert runner.invoke(app, [*convert, "--force"]).output.startswith("replaced ")
     assert runner.invoke(app, ["convert", "rl_rvo", str(file), "-o", "out.onnx"]).exit_code == 2
     with pytest.raises(ArgumentError, match="choose from"):
         convert_policy("unknown", file, out)
