@@ -82,7 +82,9 @@ PictureLayer layer_of(const LayerTuple& given) {
 }
 
 Ink ink_of(const InkTuple& color) {
-  const auto level = [](double value) { return static_cast<int>(std::min(1.0, std::max(0.0, value)) * 255.0 + 0.5); };
+  const auto level = [](double value) {
+    return static_cast<std::uint8_t>(std::min(1.0, std::max(0.0, value)) * 255.0 + 0.5);
+  };
   return {level(color[0]), level(color[1]), level(color[2]), level(color[3])};
 }
 

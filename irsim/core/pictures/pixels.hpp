@@ -34,7 +34,7 @@ inline std::uint32_t word(const std::uint8_t* pixel) {
 
 /// A colour with opacity, 0..255.
 struct Ink {
-  int red = 0, green = 0, blue = 0, alpha = 0;
+  std::uint8_t red = 0, green = 0, blue = 0, alpha = 0;
 };
 
 /// Lay a colour with the opacity `alpha` over a pixel.
@@ -44,8 +44,7 @@ inline void lay_over(std::uint8_t* pixel, const Ink& ink, int alpha) {
   if (below == 255) {
     // Two channels at once: each product of at most 255 * 255 has 16 bits of its own, and division by 255 is exact.
     constexpr std::uint32_t kLanes = 0x00ff00ffu, kHalves = 0x00800080u;
-    const std::uint8_t bytes[kChannels] = {static_cast<std::uint8_t>(ink.red), static_cast<std::uint8_t>(ink.green),
-                                           static_cast<std::uint8_t>(ink.blue), 255};
+    const std::uint8_t bytes[kChannels] = {ink.red, ink.green, ink.blue, 255};
     if (alpha >= 255) {
       std::memcpy(pixel, bytes, sizeof bytes);
       return;

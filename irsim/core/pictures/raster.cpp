@@ -88,30 +88,28 @@ void Raster::cut_edge(Vec2 from, Vec2 to) {
 
 void Raster::inner_edge(double x0, double y0, double x1, double y1) {
   if (y0 == y1) return;
-  const float direction = y0 < y1 ? 1.0f : -1.0f;
-  if (y0 > y1) {
-    std::swap(x0, x1);
-    std::swap(y0, y1);
-  }
-  const int top = static_cast<int>(y0), last = static_cast<int>(rows_.size()) - 1;
-  const int bottom = std::min(last, static_cast<int>(std::ceil(y1)) - 1);
+  // Edges run up and down by turns, so branches would often be foreseen wrongly; these are none.
+  const bool down = y0 < y1;
+  const float direction = down ? 1.0f : -1.0f;
+  const double from = down ? x0 : x1, to = down ? x1 : x0;
+  const double low = std::min(y0, y1), high = std::max(y0, y1);
+  x0 = from, x1 = to, y0 = low, y1 = high;
+  const int top = static_cast<int>(y0), below = static_cast<int>(y1);
+  const int bottom = below == y1 ? below - 1 : below;  // an edge that ends on a border of rows does not touch the next
   first_ = std::min(first_, box_.top + top);
   last_ = std::max(last_, box_.top + bottom);
-  if (top == bottom) {
-    part(rows_[top], deltas_.data() + static_cast<std::size_t>(top) * pitch_, x0, x1,
-         direction * static_cast<float>(y1 - y0));
-    return;
-  }
+  Row* row = rows_.data() + top;
+  float* deltas = deltas_.data() + static_cast<std::size_t>(top) * pitch_;
+  if (top == bottom) return part(*row, deltas, x0, x1, direction * static_cast<float>(y1 - y0));
   const double slope = (x1 - x0) / (y1 - y0);
   double x = x0, y = y0;
-  for (int row = top; row <= bottom; ++row) {
-    const double next = row == bottom ? y1 : row + 1.0;
-    const double end = row == bottom ? x1 : x + (next - y) * slope;
-    part(rows_[row], deltas_.data() + static_cast<std::size_t>(row) * pitch_, x, end,
-         direction * static_cast<float>(next - y));
+  for (int next = top + 1; next <= bottom; ++next, ++row, deltas += pitch_) {
+    const double end = x + (next - y) * slope;
+    part(*row, deltas, x, end, direction * static_cast<float>(next - y));
     x = end;
     y = next;
   }
+  part(*row, deltas, x, x1, direction * static_cast<float>(y1 - y));
 }
 
 }  // namespace irsim

@@ -112,33 +112,33 @@ class Raster {
   PixelBox convex_;  ///< its rows, from the upper border of the box
 };
 
-/// Add the part of an edge within one row: it ranges over `height` of the row, from x0 to x1.
+/// Add the part of an edge within one row: it ranges over `height` of the row, from x0 to x1, which lie in the box.
 inline void Raster::part(Row& row, float* deltas, double x0, double x1, float height) {
-  if (x0 > x1) std::swap(x0, x1);
-  const int limit = static_cast<int>(pitch_) - 2;
-  const int left = std::min(limit, std::max(0, static_cast<int>(x0)));
-  const int right = std::min(limit, std::max(left, static_cast<int>(x1)));
+  const double low = std::min(x0, x1), high = std::max(x0, x1);
+  x0 = low, x1 = high;
+  const int left = static_cast<int>(x0), right = static_cast<int>(x1);
   row.from = std::min(row.from, left);
   row.to = std::max(row.to, right + 1);
+  deltas += left;
   const float start = static_cast<float>(x0 - left), end = static_cast<float>(x1 - right);
   if (left == right) {
     const float outside = height * 0.5f * (start + end);
-    deltas[left] += height - outside;
-    deltas[left + 1] += outside;
+    deltas[0] += height - outside;
+    deltas[1] += outside;
     return;
   }
   const float per_column = height / static_cast<float>(x1 - x0), first = 1.0f - start;
   float covered = 0.5f * first * first * per_column, before = covered;
-  deltas[left] += covered;
-  for (int x = left + 1; x < right; ++x) {
-    covered = (first + static_cast<float>(x - left - 1) + 0.5f) * per_column;
-    deltas[x] += covered - before;
+  *deltas++ += covered;
+  for (int columns = right - left, k = 1; k < columns; ++k) {
+    covered = (first + static_cast<float>(k - 1) + 0.5f) * per_column;
+    *deltas++ += covered - before;
     before = covered;
   }
   // In the last column the edge ends after `end`; beyond it, the whole height is covered.
   covered = height * (1.0f - end) + end * (first + static_cast<float>(right - left - 1) + 0.5f * end) * per_column;
-  deltas[right] += covered - before;
-  deltas[right + 1] += height - covered;
+  deltas[0] += covered - before;
+  deltas[1] += height - covered;
 }
 
 }  // namespace irsim

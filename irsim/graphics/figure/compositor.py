@@ -184,7 +184,8 @@ class Compositor:
 
     def _draw_furniture(self, canvas: Any) -> None:
         ax, figure = self.ax, self.figure
-        position = ax.get_position().bounds  # this applies the aspect, too
+        # Unless the axes fill their place, this applies the aspect, too, after which all transforms are made again.
+        position = ax.get_position(original=ax.get_aspect() == "auto").bounds
         key = (*figure.get_size_inches(), figure.dpi, *ax.get_xlim(), *ax.get_ylim(), *position, ax.axison)
         parts = (ax.patch, ax.xaxis, ax.yaxis) if ax.axison else ()
         is_changed = any(part.stale for part in self._parts())

@@ -81,6 +81,7 @@ class MarkArtist(PathCollection):
         fill: Makes the paths of the collection from the marks.
         items: The marks, one by one or in groups.
         scale: Points per metre, for line widths given in metres.
+        ends: Styles of caps and joins of strokes.
         covers: Whether the marks are the page, which hides what reaches out of the world in whole pixels, or lie on it.
     """
 
@@ -88,6 +89,7 @@ class MarkArtist(PathCollection):
     fill: Callable[[], None]
     items: Sequence[Mark | Group] = ()
     scale = 0.0
+    ends = ("butt", "miter")
     covers = False
     _work: Sequence[Work] = ()
     _is_plain = True
@@ -119,8 +121,7 @@ class MarkArtist(PathCollection):
             self._work, self._is_plain = prepare(self.items, self.scale, self._work)
             self._prepared = self.items
         if self._is_plain and self._work:
-            ends = str(self.get_capstyle()), str(self.get_joinstyle())
-            paint(canvas, (canvas.pixels, canvas.renderer), self.axes, self._work, ends)
+            paint(canvas, (canvas.pixels, canvas.renderer), self.axes, self._work, self.ends)
         return self._is_plain
 
     def is_reached(self, canvas: Canvas, boxes: Sequence[Box]) -> bool:
@@ -153,7 +154,7 @@ class MarkLayer:
         caps, joins = ("round", "round") if key[2] else ("butt", "miter")
         joins = "round" if key[1] == PARTS.index("trajectory") else joins
         self.artist = MarkArtist([], capstyle=caps, joinstyle=joins, zorder=key[0] + ZORDER_STEP * key[1])
-        self.artist.fill = self._fill
+        self.artist.fill, self.artist.ends = self._fill, (caps, joins)
         self.artist.covers = key[1] in (PARTS.index("frame"), PARTS.index("foot"))
         ax.add_collection(self.artist, autolim=False)
         self.version = self.resting_scenes = 0

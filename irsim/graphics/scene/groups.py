@@ -17,7 +17,9 @@ __all__ = ["Outlines", "boxes_of", "circles", "kept", "placed_areas", "ranges_be
 def ranges_between(ends: Sequence[int] | NDArray[np.int64]) -> NDArray[np.int64]:
     """(N, 2) first and end of the points of each of N shapes that follow one another, from 0 and their ends (N + 1)."""
     borders = np.asarray(ends, dtype=np.int64)
-    return np.stack([borders[:-1], borders[1:]], axis=1)
+    ranges = np.empty((len(borders) - 1, 2), dtype=np.int64)
+    ranges[:, 0], ranges[:, 1] = borders[:-1], borders[1:]
+    return ranges
 
 
 def boxes_of(group: Group) -> Floats:
@@ -48,7 +50,7 @@ def placed_areas(
     part: str,
     zorder: float,
     numbers: Sequence[int],
-    rings: Sequence[Floats],
+    rings: Sequence[Floats] | Floats,
     poses: Sequence[Pose] | Floats,
     looks: list[Look],
 ) -> list[Group]:
@@ -62,14 +64,16 @@ def placed_areas(
         poses: x, y [m] and heading [rad] of each.
         looks: The look of each.
     """
-    if not rings:
+    if not len(rings):
         return []
-    corners = np.concatenate(rings).reshape(len(rings), -1, 2)
+    corners = np.asarray(rings)
     x, y, heading = np.asarray(poses).T[:, :, None]
     across, up, c, s = corners[:, :, 0], corners[:, :, 1], np.cos(heading), np.sin(heading)
-    points = np.stack([c * across - s * up + x, s * across + c * up + y], axis=2).reshape(-1, 2)
+    placed = np.empty_like(corners)
+    placed[:, :, 0] = c * across - s * up + x
+    placed[:, :, 1] = s * across + c * up + y
     ranges = ranges_between(np.arange(len(rings) + 1) * corners.shape[1])
-    return [Group(part, zorder, True, numbers, points, ranges, np.full(len(rings), NO_CIRCLE), looks)]
+    return [Group(part, zorder, True, numbers, placed.reshape(-1, 2), ranges, np.full(len(rings), NO_CIRCLE), looks)]
 
 
 def circles(

@@ -31,7 +31,7 @@ _CSS_NAMES = {"near": "accent", "on": "on-accent"}
 """Names that variables of the page have instead of the names in the table."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # compared by identity, as caches ask for the same few again and again
 class Theme:
     """The colours of one theme.
 
@@ -118,7 +118,7 @@ class Theme:
         return Shades(fill, self.muted, self.muted, self.person_head)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shades:
     """Fill of a body, thin things such as edges and trails, name, and the dart or the head in the body."""
 

@@ -31,6 +31,9 @@ __all__ = ["STILL_Z", "dart", "moving_marks", "person_groups", "robot_groups", "
 STILL_Z = 1.2
 _WALL_Z, _PERSON_Z, _HALO_Z, _ROBOT_Z = 1.5, 4.0, 4.28, 4.3
 _POINTS = 32
+_ANGLES = np.linspace(0, 2 * math.pi, _POINTS, endpoint=False)
+_CIRCLE = np.cos(_ANGLES), np.sin(_ANGLES)
+"""x and y of points around the outline of shoulders, which is an ellipse."""
 _WHEEL = (0.22, 0.09)
 """Length and width of a wheel, as shares of the length of the body."""
 MIN_WHEELED = 24.0
@@ -42,7 +45,7 @@ def still_marks(thing: Thing, theme: Theme) -> list[Mark]:
     body = thing.mark
     if body is None or thing.view.shape == "walls":  # the edge of the world stands for these
         return []
-    plot = thing.view.record.plot
+    plot = thing.record.plot
     if isinstance(body.geometry, Line):
         line = stroke(theme.wall, EDGES["line"], plot.obj_linestyle)
         return [Mark(thing.number, "body", body.geometry, None, line, body.alpha, _WALL_Z)]
@@ -76,16 +79,13 @@ def _people(people: Sequence[Thing], size: str, theme: Theme) -> list[Group]:
     glyph, numbers = PEOPLE[size], [thing.number for thing in people]
     radii = np.array([thing.glyph_radius for thing in people])
     poses = np.array([(*thing.drawn_at[:2], thing.course) for thing in people])
-    places, course = np.ascontiguousarray(poses[:, :2]), poses[:, 2]
+    places, course = np.ascontiguousarray(poses[:, :2]), poses[:, 2:]
     looks = [_person_looks(thing.shades, theme, size, thing.mark.alpha if thing.mark else 1.0) for thing in people]
     discs, rims, bodies, heads = (list(one) for one in zip(*looks, strict=True))
-    shoulders = [
-        _ellipse(
-            -glyph.behind * thing.glyph_radius, glyph.along * thing.glyph_radius, glyph.across * thing.glyph_radius
-        )
-        for thing in people
-    ]
-    ahead = np.stack([np.cos(course), np.sin(course)], axis=1) * (glyph.ahead * radii)[:, None]
+    shoulders = np.empty((len(people), _POINTS, 2))
+    shoulders[:, :, 0] = (-glyph.behind * radii)[:, None] + (glyph.along * radii)[:, None] * _CIRCLE[0]
+    shoulders[:, :, 1] = (glyph.across * radii)[:, None] * _CIRCLE[1]
+    ahead = np.concatenate([np.cos(course), np.sin(course)], axis=1) * (glyph.ahead * radii)[:, None]
     groups = []
     if size == "large":
         groups += circles("halo", _PERSON_Z, numbers, places, radii, discs)
@@ -114,9 +114,9 @@ def robot_groups(robots: Sequence[Thing], layout: Layout, theme: Theme) -> tuple
     for thing in robots:
         if thing.mark is None:
             continue
-        own, shape, number, r = thing.view.record.plot, thing.mark.geometry, thing.number, thing.glyph_radius
+        own, shape, number, r = thing.record.plot, thing.mark.geometry, thing.number, thing.glyph_radius
         disc = thing.is_round or r > thing.body.radius or isinstance(shape, Line)
-        width = float(own.obj_linewidth) if "obj_linewidth" in own.model_fields_set else EDGES["robot"]
+        width = float(own.obj_linewidth) if "obj_linewidth" in thing.chosen else EDGES["robot"]
         halo, body, inner = _robot_looks(
             thing.shades, theme, thing.state == "arrived", disc, (width, own.obj_linestyle), thing.mark.alpha
         )
@@ -179,7 +179,7 @@ def _dart(r: float, half_length: float | None, middle: tuple[float, float]) -> F
 
 def _wheels(thing: Thing, layout: Layout, theme: Theme, alpha: float) -> list[Mark]:
     """The wheels of a car, of which the front ones are turned by its steering angle."""
-    record, body = thing.view.record, thing.body
+    record, body = thing.record, thing.body
     drive = getattr(record.kinematics, "name", "")
     if drive != "acker" or body.length * layout.scale < MIN_WHEELED or not record.wheelbase:
         return []
@@ -194,9 +194,3 @@ def _wheels(thing: Thing, layout: Layout, theme: Theme, alpha: float) -> list[Ma
             shape: Geometry = place(turned, thing.drawn_at)
             marks.append(Mark(thing.number, "arrow", shape, theme.ink, Stroke(None), alpha, _ROBOT_Z))
     return marks
-
-
-@lru_cache(maxsize=512)
-def _ellipse(x: float, along: float, across: float) -> Floats:
-    angles = np.linspace(0, 2 * math.pi, _POINTS, endpoint=False)
-    return np.stack([x + along * np.cos(angles), across * np.sin(angles)], axis=1)

@@ -96,7 +96,7 @@ class LiveStyle:
         for name in ("marks", "beams", "labels", "pictures", "grids") if hidden else ():
             setattr(scene, name, [item for item in getattr(scene, name) if item.object not in hidden])
         world = seen_part(scene)
-        width, height = (1.0, 1.0) if shown is None else shown.figure.get_size_inches() * shown.figure.dpi
+        width, height = (1.0, 1.0) if shown is None else (shown.figure.bbox.width, shown.figure.bbox.height)
         layout = self.layout
         assert layout is not None
         if shown is not None and (round(width), round(height)) != layout.size:

@@ -77,7 +77,7 @@ def _has_name(thing: Thing, level: int) -> bool:
     if not thing.shown:
         return False
     if thing.kind != "robot":
-        chosen = "show_text" in thing.view.record.plot.model_fields_set and thing.view.shape != "walls"
+        chosen = "show_text" in thing.chosen and thing.view.shape != "walls"
         return chosen and thing.wants("show_text", False)
     chosen = level == 0 or thing.picked or (thing.state == "collided" and level < 2)
     return chosen and thing.wants("show_text")
@@ -132,7 +132,8 @@ def place_names(
     taken += [_text_box(one, layout, sizes) for one in fixed]
     walls = [box for mark, box in known.items() if mark.part == "body" and mark.zorder < _MOVING_Z]
     moving = [boxes_of(group) for group in groups if group.part in _TAKEN or group.part == "body"]
-    lines = {part: _lines(marks, groups, part, layout) for part in ("plan", "trajectory")}
+    plans, ranges = _lines(marks, groups, "plan", layout)
+    trails, _ = _lines(marks, groups, "trajectory", layout)
     x0, x1, y0, y1 = layout.world
     (left, bottom), (right, top) = layout.place(x0, y0), layout.place(x1, y1)
     size = layout.sizes.name
@@ -148,10 +149,11 @@ def place_names(
         np.array(needed, dtype=np.float64),
         heights,
         (left + 1, bottom + 1, right - 1, top - 1),
-        np.concatenate([np.array(taken).reshape(-1, 4), *(_in_picture(boxes, layout) for boxes in moving)]),
+        np.concatenate([np.array(taken).reshape(-1, 4), _in_picture(moving, layout)]),
         np.array(walls).reshape(-1, 4),
-        *lines["plan"],
-        lines["trajectory"][0],
+        plans,
+        ranges,
+        trails,
     )
     leaders, labels, halo = list[Mark](), list[Label](), (theme.paper, NAME["halo"])
     for wish, (number, *box) in zip(wishes, placed, strict=True):
@@ -188,9 +190,9 @@ def _box(mark: Mark, layout: Layout) -> Bounds:
     )
 
 
-def _in_picture(boxes: Floats, layout: Layout) -> Floats:
-    """Convert boxes (N, 4) of the world to the picture [u]."""
-    return layout.places(boxes.reshape(-1, 2)).reshape(-1, 4)
+def _in_picture(boxes: Sequence[Floats], layout: Layout) -> Floats:
+    """Convert boxes (N, 4) of the world to the picture [u], and join them."""
+    return layout.places(np.concatenate([np.empty((0, 4)), *boxes]).reshape(-1, 2)).reshape(-1, 4)
 
 
 def _text_box(one: Label, layout: Layout, sizes: TextSizes) -> tuple[float, float, float, float]:

@@ -84,8 +84,8 @@ def scan_marks(beams: Beams, thing: Thing, layout: Layout, theme: Theme, *, scan
 
 def fov_marks(shape: Mark, thing: Thing, theme: Theme) -> list[Mark]:
     """A field of view, which fades with the distance, with a dashed edge."""
-    plot = thing.view.record.plot
-    chosen = plot.fov_color if "fov_color" in plot.model_fields_set else None
+    plot = thing.record.plot
+    chosen = plot.fov_color if "fov_color" in thing.chosen else None
     color = seen(chosen, theme.paper, theme.least_edge) if chosen is not None else theme.near
     color = thing.shades.edge if chosen is None and thing.kind == "robot" else color
     edge = stroke(color, 1.0, _FOV_DASHES)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from irsim.objects.drawing.scene_builder import SceneBuilder
     from irsim.objects.view import ObjectView
     from irsim.rendering.modern.layout import Layout
+    from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Crowd", "Thing", "read_things"]
@@ -38,6 +39,8 @@ class Thing:
 
     Attributes:
         number: Id of the object.
+        record: What the scenario says of it.
+        color: Its colour, from which its shades are.
         is_round: Whether its body is a disc about its position.
         mark: The mark of its body, with its true footprint; None for one that is drawn as an image or not at all.
         drawn_at: x, y [m], heading [rad] at which it is drawn; before it appears, where it will.
@@ -46,24 +49,28 @@ class Thing:
         shown: Whether it is in the part of the world that the picture shows.
         moves: Whether it can move.
         hit: Its first collision.
+        chosen: The plot keys that the scenario gives it.
     """
 
     view: ObjectView
+    record: ObjectRecord
     number: int
     kind: Kind
+    color: Any
     shades: Shades
     body: Body
     is_round: bool
-    mark: Mark | None
-    drawn_at: tuple[float, float, float]
-    course: float
-    glyph_radius: float
-    shown: bool
     moves: bool
-    state: State
-    hit: Event | None
-    picked: bool
+    chosen: set[str]
     overrides: Mapping[str, Any]
+    mark: Mark | None = None
+    drawn_at: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    course: float = 0.0
+    glyph_radius: float = 0.0
+    shown: bool = False
+    state: State = ""
+    hit: Event | None = None
+    picked: bool = False
 
     @property
     def half_width(self) -> float:
@@ -88,8 +95,7 @@ class Thing:
         given = self.overrides.get(key)
         if given is not None and (default or not given):
             return bool(given)
-        plot = self.view.record.plot
-        return bool(getattr(plot, key)) if key in plot.model_fields_set else default
+        return bool(getattr(self.record.plot, key)) if key in self.chosen else default
 
 
 @dataclass(frozen=True)
@@ -138,7 +144,7 @@ def read_things(
         events: Events of the episode so far.
         overrides: Plot keys that the caller sets.
         picked: Names of the objects that stand out.
-        before: The things of the last picture with this layout; unchanged ones that stand serve again.
+        before: The things of the last picture with this layout, which serve again: what moves is brought up to date.
     """
     marks = {mark.object: mark for mark in scene.marks if mark.part == "body"}
     images = {picture.object for picture in scene.pictures}
@@ -151,43 +157,26 @@ def read_things(
     rows = [row for row in zip(objects, *columns, strict=True) if row[0].id in marks or row[0].id in images]
     hits = first_collisions(simulation, list(events))
     colors = _colors([row[0] for row in rows])
-    shades: dict[tuple[Kind, Any], Shades] = {}
     x0, x1, y0, y1 = layout.world
     things = list[Thing]()
     for view, (x, y, heading), appeared, arrived, stopped in rows:
-        number, record, mark = view.id, view.record, marks.get(view.id)
-        known = None if before is None or mark is None else before.get(number)
-        if known is not None and known.kind == "still" and known.mark is mark and known.overrides == overrides:
-            known.picked = view.name in picked
-            things.append(known)
+        number, mark, body = view.id, marks.get(view.id), builder.body(view)
+        thing = None if before is None else before.get(number)
+        if thing is None or not _is_same(thing, view, colors[number], body, overrides):
+            thing = _thing_of(view, colors[number], body, theme, overrides)
+        elif thing.kind == "still" and mark is not None and thing.mark is mark:
+            thing.picked = view.name in picked
+            things.append(thing)
             continue
         if math.isnan(x) or appeared < 0:
             x, y, heading = simulation.state.initial_state(view.row)[:3].tolist()
-        kind, hit, body = kind_of(record), hits.get(view.name), builder.body(view)
-        look = kind, colors[number]
-        if look not in shades:
-            shades[look] = theme.shades(*look)
-        reach = body.radius
-        things.append(
-            Thing(
-                view=view,
-                number=number,
-                kind=kind,
-                shades=shades[look],
-                body=body,
-                is_round=body.kind == "circle" and body.middle == (0.0, 0.0),
-                mark=mark,
-                drawn_at=(x, y, heading),
-                course=builder.heading_of(view, (x, y, heading)),
-                glyph_radius=reach,
-                shown=x0 - reach <= x <= x1 + reach and y0 - reach <= y <= y1 + reach,
-                moves=not record.static and record.kinematics is not None,
-                state=_state(arrived, stopped, hit) if kind == "robot" else "",
-                hit=hit,
-                picked=view.name in picked,
-                overrides=overrides,
-            )
-        )
+        thing.mark, thing.hit, thing.picked = mark, hits.get(view.name), view.name in picked
+        thing.drawn_at = x, y, heading
+        thing.course = builder.heading_of(view, thing.drawn_at)
+        thing.glyph_radius = reach = body.radius
+        thing.shown = x0 - reach <= x <= x1 + reach and y0 - reach <= y <= y1 + reach
+        thing.state = _state(arrived, stopped, thing.hit) if thing.kind == "robot" else ""
+        things.append(thing)
     shown = [thing for thing in things if thing.shown]
     crowd = Crowd(sum(t.kind == "robot" for t in shown), sum(t.kind == "person" for t in shown))
     least: dict[Kind, float] = {"robot": crowd.least_radius("robot", layout)}
@@ -196,6 +185,30 @@ def read_things(
         if thing.kind in least:
             thing.glyph_radius = max(thing.glyph_radius, least[thing.kind])
     return things, crowd
+
+
+def _is_same(thing: Thing, view: ObjectView, color: Any, body: Body, overrides: Mapping[str, Any]) -> bool:
+    """Whether all that a thing has from its scenario is as it was."""
+    same = thing.view is view and thing.record is view.record and thing.body is body
+    return same and thing.color == color and thing.overrides == overrides
+
+
+def _thing_of(view: ObjectView, color: Any, body: Body, theme: Theme, overrides: Mapping[str, Any]) -> Thing:
+    """A thing whose place and state have not been read."""
+    record, kind = view.record, kind_of(view.record)
+    return Thing(
+        view=view,
+        record=record,
+        number=view.id,
+        kind=kind,
+        color=color,
+        shades=theme.shades(kind, color),
+        body=body,
+        is_round=body.kind == "circle" and body.middle == (0.0, 0.0),
+        moves=not record.static and record.kinematics is not None,
+        chosen=record.plot.model_fields_set,
+        overrides=dict(overrides),
+    )
 
 
 def _state(arrived: bool, stopped: bool, hit: Event | None) -> State:

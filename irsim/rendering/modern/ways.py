@@ -9,7 +9,6 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from irsim import _core as core
 from irsim.common.arrays import Floats
@@ -89,14 +88,20 @@ def trail_groups(
         -1 if math.isinf(longest) else round(longest / period),
         layout.metres(_STEP) if robot else 0.0,
     )
-    tints = [_tints(thing.shades.edge, theme.paper, robot, widths, robot and level > 0) for thing in things]
-    drawn: NDArray[np.bool_] = ranges[:, :, 1] > ranges[:, :, 0]
-    owners, pieces = (numbers.tolist() for numbers in np.nonzero(drawn))
-    if not owners:
+    edges = [thing.shades.edge for thing in things]
+    tints = {edge: _tints(edge, theme.paper, robot, widths, robot and level > 0) for edge in dict.fromkeys(edges)}
+    pieces = ranges.reshape(-1, 2)
+    drawn = np.flatnonzero(pieces[:, 1] > pieces[:, 0])
+    if not len(drawn):
         return []
-    looks = [tints[owner][piece] for owner, piece in zip(owners, pieces, strict=True)]
-    numbers, radii = [things[owner].number for owner in owners], np.full(len(looks), NO_CIRCLE)
-    return [Group("trajectory", zorder, False, numbers, points, ranges[drawn], radii, looks)]
+    every_look, every_number = list[Look](), list[int]()
+    for thing, edge in zip(things, edges, strict=True):
+        every_look += tints[edge]
+        every_number += [thing.number] * len(tints[edge])
+    chosen = drawn.tolist()
+    looks, numbers = [every_look[piece] for piece in chosen], [every_number[piece] for piece in chosen]
+    radii = np.full(len(drawn), NO_CIRCLE)
+    return [Group("trajectory", zorder, False, numbers, points, pieces[drawn], radii, looks)]
 
 
 @lru_cache(maxsize=512)
@@ -132,7 +137,7 @@ def remaining_goals(thing: Thing, simulation: Simulation) -> list[Floats]:
     if not thing.moves or thing.state == "arrived" or simulation.appeared[thing.view.row] < 0:
         return []
     present = simulation.goal[thing.view.row][:3]
-    if math.isnan(present[0]) or simulation.scenario.is_parked(thing.view.record):
+    if math.isnan(present[0]) or simulation.scenario.is_parked(thing.record):
         return []
     goals = simulation.state.goals(thing.view.row)
     if len(goals) == 1:
@@ -153,7 +158,7 @@ def path_ahead(thing: Thing, goals: list[Floats], simulation: Simulation) -> Flo
     route = simulation.state.route(thing.view.row)
     if route is not None and len(route):
         x, y = (route[-1, :2] - ends[0]).tolist()
-        if math.hypot(x, y) <= thing.view.record.goal_threshold:
+        if math.hypot(x, y) <= thing.record.goal_threshold:
             return np.concatenate([[here], _left_of(route[:, :2], here), ends[1:]])
     return np.concatenate([[here], ends])
 
@@ -199,7 +204,7 @@ def goal_marks(thing: Thing, goals: list[Floats], layout: Layout, theme: Theme, 
         Mark(number, "goal", disc, color, Stroke(None), GOAL["fill"], GOAL_Z),
         Mark(number, "goal", disc, None, stroke(color, layout.sizes.goal[1]), 1.0, GOAL_Z),
     ]
-    if not math.isnan(heading) and thing.view.record.heading_counts([x, y, heading]):
+    if not math.isnan(heading) and thing.record.heading_counts([x, y, heading]):
         sign = place(dart(GOAL["dart"] * radius), (x, y, heading))
         marks.append(Mark(number, "goal", sign, color, Stroke(None), 1.0, GOAL_Z))
     else:
