@@ -36,6 +36,20 @@ class OmniAngularOptions(_Options):
 class AckerOptions(_Options):
     def __init__(self, *, noise: bool, alpha: Sequence[float], mode: str, wheelbase: float, psi_max: float) -> None: ...
 
+class TricycleOptions(_Options):
+    def __init__(
+        self,
+        *,
+        noise: bool,
+        alpha: Sequence[float],
+        mode: str,
+        wheelbase: float,
+        psi_max: float,
+        steer_rate: float,
+        steer_acce: float,
+        steer_lag: float,
+    ) -> None: ...
+
 # behaviors (core/behaviors/)
 class AvocadoOptions(_Options):
     def __init__(

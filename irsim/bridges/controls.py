@@ -17,7 +17,7 @@ def native_control(
     """The control that follows a command as well as the drive can.
 
     A car gets the steering angle with the curvature of the command: ``atan(wheelbase * yaw rate / speed)``, and
-    keeps its steering angle while it stands.
+    keeps its steering angle while it stands. The wheel of a tricycle gets the velocity of the point where it stands.
 
     Args:
         agent: The robot.
@@ -40,5 +40,10 @@ def native_control(
         base = 1.0 if agent.wheelbase is None else agent.wheelbase
         angle = steer if abs(forward) < 1e-6 else math.atan(base * rate / forward)
         return [forward, (angle - steer) / period if steering_rate else angle]
+    if agent.drive == "tricycle":
+        across = rate * (1.0 if agent.wheelbase is None else agent.wheelbase)
+        speed = math.copysign(math.hypot(forward, across), -1.0 if forward < 0.0 else 1.0)
+        angle = steer if abs(speed) < 1e-6 else math.asin(across / speed)
+        return [speed, (angle - steer) / period if steering_rate else angle]
     what = f"'{agent.name}' with the drive {agent.drive!r} cannot follow speeds and a yaw rate"
-    raise BridgeError("bridge-mismatch", what, "use a robot with diff, omni, omni_angular or acker")
+    raise BridgeError("bridge-mismatch", what, "use a robot with diff, omni, omni_angular, acker or tricycle")

@@ -130,6 +130,8 @@ class KinematicsOptions(Options):
     """Whether a control changes the heading."""
     steered: ClassVar[bool] = False
     """Whether the second control steers wheels: the heading changes only while they roll, and the wheelbase matters."""
+    pivots: ClassVar[bool] = False
+    """Whether its steered wheel may stand at a quarter turn, so that it turns on the spot."""
     usual_vel_max: ClassVar[tuple[float, ...]] = ()
     usual_vel_min: ClassVar[tuple[float, ...]] = ()
     usual_acce: ClassVar[tuple[float, ...]] = ()
@@ -146,7 +148,7 @@ class KinematicsOptions(Options):
     noise: Bool = False
     """Add Gaussian noise to the executed velocity, drawn in each step for each object."""
     mode: str | None = None
-    """Only `acker` uses it; the other drives accept and ignore it."""
+    """Only drives that steer use it; the other ones accept and ignore it."""
     tau: Annotated[Seconds, Field(ge=0)] | None = None
     """Lag of the drive in `collision_mode: contact`; null is `world.drive_tau`."""
     wheelbase: Annotated[Meters, Field(ge=0)] | None = None
@@ -176,7 +178,8 @@ class ShapeOptions(Options):
     name: str
     """Name of the shape."""
     wheelbase: Annotated[Meters, Field(ge=0)] | None = None
-    """Distance between the axles, for `acker`; rectangles and circles then have their origin at the rear axle."""
+    """Distance between the axles of a drive that steers; rectangles and circles then have their origin at the rear
+    axle."""
 
 
 Vertices = Annotated[Integer, Field(ge=3, le=1000)]

@@ -5,15 +5,19 @@
 //   Vec3    follow(options, wish)        controls that realise a wanted world-frame velocity
 //   Rows    rows(options)                which controls are what
 //   Vec3    constrain(options, control)  limits beyond vel_min, vel_max and acce (optional)
+//   Car     steering(options)            how it steers, of a drive whose second control steers wheels (optional)
 //
 // The struct has `bool noise`. A field `wheelbase` receives the wheelbase of the drive, else of the shape, else 1.
 // `dash` calls `follow` with the top speed toward the goal, unless behaviors/dash.hpp has a law for the drive. Planned
-// paths and `orca` (routes/steering.cpp, orca/avoidance.cpp) take a drive that they do not know for one that turns on
-// the spot.
+// paths, `orca` and `footprint_orca` go by `rows` and `steering`: what steers is driven as a car, what has one travel
+// row and a yaw rate as a drive that turns on the spot.
 #pragma once
+
+#include <optional>
 
 #include "geometry/vec.hpp"
 #include "integration.hpp"
+#include "steering.hpp"
 
 namespace irsim {
 
@@ -76,6 +80,11 @@ Vec3 constrain(const Options&, Vec3 control) {
   return control;
 }
 
+template <class Options>
+std::optional<Car> steering(const Options&) {
+  return std::nullopt;
+}
+
 /// Translate by a body-frame velocity while turning at a yaw rate, both constant within the period, and write the
 /// twist.
 inline void translate(const Motion& m, Vec2 body_velocity, double yaw_rate) {
@@ -89,6 +98,19 @@ inline void translate(const Motion& m, Vec2 body_velocity, double yaw_rate) {
 inline void move(const Motion& m, Vec2 body_velocity, double yaw_rate) {
   translate(m, body_velocity, yaw_rate);
   m.pose.theta = wrap(m.pose.theta + yaw_rate * m.dt);
+}
+
+/// Write the twist of a drive whose velocity changes within the period: of the arc, or under Euler of the straight way,
+/// from the pose before to the pose now. A period of length 0 leaves the twist as it is.
+///
+/// Args:
+///   turn: Change of the heading [rad], not wrapped.
+inline void set_mean_twist(const Motion& m, const Pose& before, double turn) {
+  if (!(m.dt > 0.0)) return;
+  const Vec2 way = m.pose.position() - before.position();
+  const double chord = sinc(0.5 * turn), half = m.integration == kExact && chord > 0.1 ? 0.5 * turn : 0.0;
+  const Vec2 v = rotate(way, unit(-half)) * (1.0 / (m.dt * sinc(half)));
+  m.twist = {{v.x, v.y, turn / m.dt}};
 }
 
 /// Standard deviations of forward speed and yaw (or steering) rate, which grow with both (Thrun, Burgard, Fox

@@ -233,7 +233,7 @@ def shunting_message(simulation: Simulation, robots: Sequence[RobotResult], park
         record, goals = simulation.scenario.objects[row], state.goals(row)
         if not goals or robot.name in parked or not has_one_end(record):
             continue
-        if getattr(record.kinematics, "name", "") != "acker":
+        if not getattr(record.kinematics, "steered", False):
             continue
         arrived = robot.time_to_goal
         steps = int(simulation.count[0]) if arrived is None else round(arrived / step_time)

@@ -57,6 +57,8 @@ _VALUES: dict[str, Any] = {
     "kinematics.diff.alpha": [0.03, 0, 0, 0.03],
     "kinematics.omni.alpha": [0.03, 0.03],
     "kinematics.omni_angular.alpha": [0.03, 0.03, 0.03],
+    "kinematics.tricycle.alpha": [0.03, 0, 0, 0.03],
+    "kinematics.tricycle.psi_max": 1.2,
     "lookahead": 1.5,
     "metadata": {"Title": "run 1"},
     "maxSpeed": 1.2,

@@ -29,8 +29,10 @@ EVERYDAY: dict[str, str] = {
     "robot.fov": "field of view, view angle, visual range, sees, seen, visible, visibility, surveillance, guard, "
     "vision cone, view cone, sight cone, cone of vision, cone, line of sight, watch, sight",
     "robot.kinematics.acker": "car, ackermann, ackerman, car-like, bicycle, bicycle model, vehicle, truck, bus, "
-    "steering, tricycle, lorry"
+    "steering, lorry"
     ", auto, lkw, fahrzeug, coche, camión, 汽车, 卡车, 车辆",
+    "robot.kinematics.tricycle": "three wheels, three-wheeler, forklift, pallet truck, steered drive wheel, dreirad, "
+    "front wheel drive, triciclo",
     "robot.kinematics.diff": "differential, differential drive, diff drive, unicycle, turtlebot, two wheels, tank, "
     "skid steer",
     "robot.kinematics.omni": "omnidirectional, holonomic, mecanum, omni wheels, omniwheel, swerve, point mass",

@@ -26,13 +26,14 @@ THINGS: dict[str, Guide] = {
         ),
     ),
     "forklift": Guide(
-        "kinematics acker and a rectangle; it lifts nothing",
-        "Take kinematics acker with a rectangle of about 2.4 x 1.2 m, wheelbase 1.5 m and 2 to 3 m/s; a pallet jack: "
-        f"1.8 x 0.7 m, walking pace. {NO} forks, loads or steered rear wheels: a pallet is an obstacle with shape "
-        "rectangle (1.2 x 0.8 m), and it stays where it is. Pushing: world.collision_mode: contact. Template: "
-        "warehouse.",
-        "robot: {kinematics: {name: acker}, shape: {name: rectangle, length: 2.4, width: 1.2, wheelbase: 1.5},\n"
-        "        state: [2, 2, 0], goal: [14, 8], vel_max: [2, 0.6], behavior: {name: follow}}",
+        "kinematics tricycle and a rectangle; it lifts nothing",
+        "Take kinematics tricycle with a rectangle of about 2.4 x 1.2 m, wheelbase 1.5 m and 2 to 3 m/s; a pallet "
+        "jack: 1.8 x 0.7 m, walking pace. It drives away from its forks, whose axle is the fixed one. "
+        f"{NO} forks or loads: a pallet is an obstacle with shape rectangle (1.2 x 0.8 m), and it stays where it is. "
+        "Pushing: world.collision_mode: contact. Template: warehouse.",
+        "robot: {kinematics: {name: tricycle, steer_rate: 1.5}, state: [2, 2, 0], goal: [14, 8],\n"
+        "        shape: {name: rectangle, length: 2.4, width: 1.2, wheelbase: 1.5},\n"
+        "        vel_max: [2, 1.57], vel_min: [-2, -1.57], behavior: {name: follow}}",
         (
             *("fork lift", "forklift truck", "pallet jack", "pallet truck", "pallet"),
             *("reach truck", "stacker", "gabelstapler", "stapler", "hubwagen", "palette", "carretilla elevadora"),

@@ -252,10 +252,12 @@ def state_and_control(obj: Any, odometry: Any) -> tuple[list[float], list[float]
         return state, None
     control: list[float] = obj.velocity[:, 0].tolist()
     control[0] = forward
-    if obj.kinematics == "acker":
+    if obj.record.kinematics.steered:
         if abs(forward) > _MIN_STEERING_SPEED_M_S:
             state[3] = math.atan(rate * (obj.wheelbase or 1.0) / forward)
         control[1] = state[3]
+        if obj.kinematics == "tricycle":
+            control[0] /= math.cos(state[3])
     elif obj.record.kinematics.speeds == 2:
         control[1:] = [lateral, rate][: len(control) - 1]
     elif len(control) > 1:
@@ -273,6 +275,9 @@ def _body_twist(obj: Any) -> Twist:
     forward, lateral, rate = 0.0, 0.0, 0.0
     if obj.kinematics is not None and obj.record.kinematics.speeds == 2:
         forward, lateral, rate = control[0], control[1], control[2] if obj.vel_dim > 2 else 0.0
+    elif obj.kinematics == "tricycle":
+        steer = float(obj.state[3, 0])
+        forward, rate = control[0] * math.cos(steer), control[0] * math.sin(steer) / (obj.wheelbase or 1.0)
     elif obj.kinematics == "acker":
         forward = control[0]
         rate = forward * math.tan(float(obj.state[3, 0])) / (obj.wheelbase or 1.0)

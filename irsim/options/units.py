@@ -37,6 +37,7 @@ __all__ = [
     "Points",
     "Radians",
     "RadiansPerSecond",
+    "RadiansPerSecondSquared",
     "Seconds",
     "Seed",
     "SpanAngle",
@@ -73,6 +74,7 @@ Hertz = Annotated[float, unit("1/s")]
 MetersPerSecond = Annotated[float, unit("m/s", 1e7)]
 MetersPerSecondSquared = Annotated[float, unit("m/s^2", 1e7)]
 RadiansPerSecond = Annotated[float, unit("rad/s", 1e7)]
+RadiansPerSecondSquared = Annotated[float, unit("rad/s^2", 1e7)]
 Kilograms = Annotated[float, unit("kg")]
 Pixels = Annotated[float, unit("px", 1e7)]
 Points = Annotated[float, unit("pt", 1e7)]

@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from shapely.affinity import affine_transform
@@ -295,14 +295,14 @@ def path_margin(simulation: Simulation, view: ObjectView, line: Floats, space: F
 
 def poses_along(view: ObjectView, line: Floats, step: float) -> Floats:
     """Return the (P, 3) poses of a robot along a path, at most ``step`` apart [m]."""
-    drive = getattr(view.record.kinematics, "name", "")
+    drive: Any = view.record.kinematics
     heading = float(view.state[2, 0])
     poses = [(float(line[0, 0]), float(line[0, 1]), heading)]
     for a, b in itertools.pairwise(line):
         length = float(np.hypot(*(b - a)))
         if length == 0:
             continue
-        ahead = heading if drive.startswith("omni") else math.atan2(b[1] - a[1], b[0] - a[0])
+        ahead = heading if getattr(drive, "speeds", 0) == 2 else math.atan2(b[1] - a[1], b[0] - a[0])
         turn = math.remainder(ahead - heading, math.tau)
         turns = max(1, math.ceil(abs(turn) / _MAX_TURN_RAD))
         poses += [(a[0], a[1], heading + turn * k / turns) for k in range(1, turns)]
@@ -310,7 +310,7 @@ def poses_along(view: ObjectView, line: Floats, step: float) -> Floats:
         poses += [(*(a + (b - a) * (k / count)), ahead) for k in range(1, count + 1)]
         heading = ahead
     result = np.asarray(poses, dtype=np.float64)
-    return _turned_slowly(result, view.record) if drive == "acker" else result
+    return _turned_slowly(result, view.record) if getattr(drive, "steered", False) else result
 
 
 def _turned_slowly(poses: Floats, record: ObjectRecord) -> Floats:

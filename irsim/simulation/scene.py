@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart
+from irsim.options.registry import KINEMATICS
 
 __all__ = ["SCENE_VERSION", "Grid", "Lidar", "Look", "SceneDescription", "SceneObject"]
 
@@ -79,7 +80,7 @@ class SceneObject:
         index: Place in the scene, which is its row in states.
         name: Its name.
         role: ``robot`` or ``obstacle``.
-        drive: ``diff``, ``omni``, ``omni_angular``, ``acker``, the name of a drive of a plug-in, or None without one.
+        drive: Name of its drive, of irsim or of a plug-in; None without one.
         moves: Whether it can move.
         pose: x, y [m], yaw [rad] at the start, world frame.
         goals: Its goals x, y [m], yaw [rad], world frame.
@@ -87,7 +88,7 @@ class SceneObject:
         radius: Radius of the circle around its center that encloses the footprint [m].
         low, high: Limits of its controls, in the words of the drive.
         acceleration: Limits of the change of its controls [1/s]; infinite without.
-        wheelbase: [m], of ``acker``; None for other drives.
+        wheelbase: [m], of a drive that steers wheels; None for other drives.
         mass: [kg]; infinite for an object that nothing pushes.
         color: Red, green, blue, from 0 to 1.
         lidars: Its lidars.
@@ -119,6 +120,12 @@ class SceneObject:
     static: bool = False
     threshold: float = 0.0
     look: Look | None = None
+
+    @property
+    def steered(self) -> bool:
+        """Whether its drive steers wheels, as cars do."""
+        feature = KINEMATICS.get(self.drive or "")
+        return feature is not None and bool(getattr(feature.options, "steered", False))
 
 
 @dataclass(frozen=True)

@@ -135,7 +135,7 @@ def _row(
 
 def _reference_point(record: ObjectRecord, state: core.State, row: int) -> str:
     """Where a car has the point that its pose is about, and how far its body reaches behind and ahead of it."""
-    if getattr(record.kinematics, "name", None) != "acker" and getattr(record.shape, "wheelbase", None) is None:
+    if not getattr(record.kinematics, "steered", False) and getattr(record.shape, "wheelbase", None) is None:
         return ""
     low, high = outline(state, row).box()
     return f" (its pose means the rear axle; body {low[0]:+.2f} to {high[0]:+.2f} m)"

@@ -51,7 +51,7 @@ def cast(scene: SceneDescription, options: Carla) -> tuple[Role, ...]:
     """
     vehicles = options.vehicles
     if vehicles is None:
-        vehicles = [a.name for a in scene.agents if a.moves and a.drive == "acker" and a.name not in options.follow]
+        vehicles = [a.name for a in scene.agents if a.moves and a.steered and a.name not in options.follow]
     walkers = options.walkers
     if walkers is None:
         taken = {*vehicles, *options.follow}
@@ -76,7 +76,7 @@ def cast(scene: SceneDescription, options: Carla) -> tuple[Role, ...]:
 
 def _vehicle(agent: SceneObject, options: Carla, lidars: tuple[Lidar, ...]) -> Role:
     external = options.command != "transform"
-    wheelbase = options.wheelbase or agent.wheelbase or (USUAL_WHEELBASE if agent.drive == "acker" else None)
+    wheelbase = options.wheelbase or agent.wheelbase or (USUAL_WHEELBASE if agent.steered else None)
     if options.command == "ackermann":
         if agent.drive in ("omni", "omni_angular"):
             what = f"'{agent.name}' moves sideways, which a steered vehicle cannot"

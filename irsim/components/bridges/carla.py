@@ -95,7 +95,7 @@ class Carla(BridgeOptions):
     walkers: list[Name] | None = None
     """Objects that are pedestrians; null is all that can move and are neither vehicles nor followed."""
     vehicles: list[Name] | None = None
-    """Objects that are vehicles; null is all with the drive `acker`."""
+    """Objects that are vehicles; null is all whose drive steers wheels, such as `acker`."""
     follow: dict[Name, Name | Annotated[Integer, Field(ge=1)]] = {}
     """Objects that follow existing actors: the name of the object, and the `role_name` or the id of an actor that is in
     the town already."""

@@ -48,8 +48,8 @@ void fill_crowd(const Decision& decision, const OrcaCrowd& all, FootprintCrowd& 
 /// Largest speed from which the object can stop at a goal at which it must turn [m/s]; infinite at other times.
 double approach_speed(const World& world, const State& state, int row, int object) {
   const double left = norm(state.goal[row].position() - state.pose[row].position());
-  const bool brakes = std::holds_alternative<DiffOptions>(world.drive[object]) &&
-                      turns_at_goal(world, state, row, object) && left >= world.goal_threshold[object];
+  const bool brakes = turns_in_place(world.drive[object]) && turns_at_goal(world, state, row, object) &&
+                      left >= world.goal_threshold[object];
   return brakes ? speed_to_goal(world, state, row) : kInfinity;
 }
 
@@ -64,7 +64,7 @@ FootprintSelf self_of(const FootprintOrcaOptions& options, const Decision& decis
   const bool slides = std::holds_alternative<OmniOptions>(drive) || std::holds_alternative<OmniAngularOptions>(drive);
   const double own = std::min(slides ? std::min(top[0], top[1]) : top[0], approach_speed(world, state, row, i));
   const double reach = norm(shapes.centre[i]) + shapes.radius[i];
-  const bool turns = !slides && !std::holds_alternative<AckerOptions>(drive);
+  const bool turns = !slides && !steers(drive);
   return {options,
           decision,
           all,

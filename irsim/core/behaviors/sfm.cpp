@@ -192,7 +192,7 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
                        group_force(options, decision, ego);
     Vec2 velocity = ego.velocity + force * dt;
     // A car turns too slowly to follow one period of the forces, so on a route it steers where they lead in the end.
-    if (ego.route != nullptr && std::holds_alternative<AckerOptions>(world.drive[ego.id])) {
+    if (ego.route != nullptr && steers(world.drive[ego.id])) {
       velocity = ego.velocity + force * options.relaxation_time;
     }
     const double fast = norm(velocity);

@@ -13,8 +13,6 @@ namespace {
 
 constexpr int kMaxSteps = 40;  // longer ways are followed in larger steps
 
-bool steers(const Drive& drive) { return std::holds_alternative<AckerOptions>(drive); }
-
 Vec3 within_limits(const World& world, const State& state, int row, int object, const Vec3& from, const Vec3& wanted,
                    double dt) {
   Vec3 next;
@@ -40,8 +38,8 @@ bool plans(const World& world, const State& state, int row, int object) {
 }  // namespace
 
 Vec3 braking_control(const Drive& drive, double steering) {
-  const auto* car = std::get_if<AckerOptions>(&drive);
-  return car != nullptr && car->mode == Steering::steer ? Vec3{{0.0, steering, 0.0}} : Vec3{};
+  const std::optional<Car> car = car_of(drive);
+  return car && car->mode == Steering::steer ? Vec3{{0.0, steering, 0.0}} : Vec3{};
 }
 
 bool brakes_in_time(const World& world, int object) {

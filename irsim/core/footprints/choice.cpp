@@ -70,7 +70,7 @@ Course course_to(const FootprintSelf& self, Vec2 velocity) {
 
 /// Whether a car must drive away from its goal first, and forward (1) or backward (-1): no arc leads to places well
 /// inside its turning circles. 0 if it need not, or if the velocity leads elsewhere.
-double leaves_goal(const FootprintSelf& self, const AckerOptions& car, double wheelbase, Vec2 velocity) {
+double leaves_goal(const FootprintSelf& self, const Car& car, double wheelbase, Vec2 velocity) {
   const State& state = self.state();
   double steering = std::min(car.psi_max, kMostSteering);
   if (car.mode == Steering::steer) steering = std::min(steering, state.vel_max[self.row][1]);
@@ -84,7 +84,7 @@ double leaves_goal(const FootprintSelf& self, const AckerOptions& car, double wh
   return inside > (leaving ? -kOutside : 0.5 * self.world().goal_threshold[self.object]) ? away : 0.0;
 }
 
-Vec3 car_control(const FootprintSelf& self, const AckerOptions& car, Vec2 velocity) {
+Vec3 car_control(const FootprintSelf& self, const Car& car, Vec2 velocity) {
   const State& state = self.state();
   const double psi = state.extra[static_cast<std::size_t>(self.row) * state.extra_rows];
   const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0, dt = self.world().step_time;
@@ -94,17 +94,18 @@ Vec3 car_control(const FootprintSelf& self, const AckerOptions& car, Vec2 veloci
   if (away != 0.0) return {{away * speed, car.mode == Steering::steer ? 0.0 : -psi / dt, 0.0}};
   const Course course = course_to(self, velocity);
   const double rolls = course.sign * speed * std::max(kMinCarShare, std::cos(course.error));
-  const double target = clip(std::atan(course.error * wheelbase / (rolls * 2.0 * dt)), -kMostSteering, kMostSteering);
+  const double target =
+      clip(car.angle_for(course.error * wheelbase / (rolls * 2.0 * dt)), -kMostSteering, kMostSteering);
   return {{rolls, car.mode == Steering::steer ? target : (target - psi) / dt, 0.0}};
 }
 
 /// The control of a car with a steering angle, and the angle by which it then turns in some steps.
-Vec3 steered(const FootprintSelf& self, const AckerOptions& car, double speed, double steering, double& angle) {
+Vec3 steered(const FootprintSelf& self, const Car& car, double speed, double steering, double& angle) {
   constexpr double kSteps = 5.0;
   const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0, dt = self.world().step_time;
   const double psi = self.state().extra[static_cast<std::size_t>(self.row) * self.state().extra_rows];
   const double target = clip(steering, -kMostSteering, kMostSteering);
-  angle = kSteps * speed * dt * std::tan(target) / wheelbase;
+  angle = kSteps * speed * dt * car.yaw(target) / wheelbase;
   return {{speed, car.mode == Steering::steer ? target : (target - psi) / dt, 0.0}};
 }
 
@@ -114,8 +115,8 @@ Vec3 control_toward(const FootprintSelf& self, Vec2 velocity) {
   const State& state = self.state();
   const Drive& drive = world.drive[self.object];
   const double speed = norm(velocity), dt = world.step_time;
-  if (const auto* car = std::get_if<AckerOptions>(&drive)) return car_control(self, *car, velocity);
-  if (std::holds_alternative<DiffOptions>(drive)) {
+  if (const std::optional<Car> car = car_of(drive)) return car_control(self, *car, velocity);
+  if (turns_in_place(drive)) {
     if (speed < kMinSpeed) return {};
     const Course course = course_to(self, velocity);
     const double most = std::min(state.vel_max[self.row][1],
@@ -157,8 +158,8 @@ class BestVelocity {
   /// Turn or move a little toward the wanted direction, if the object would stand otherwise: a body that is wedged
   /// between others gets free in small steps.
   void inch() {
-    const auto* car = std::get_if<AckerOptions>(&self_.world().drive[self_.object]);
-    const bool turns = self_.turn_rate > 0.0 || car != nullptr;
+    const std::optional<Car> car = car_of(self_.world().drive[self_.object]);
+    const bool turns = self_.turn_rate > 0.0 || car.has_value();
     if (!(wanted_ > 0.0) || !turns || squared(best_.velocity) > kMinSpeed || best_.room < 0.0) return;
     double most = aligned(self_.heading) + kLeastGain;
     for (const double share : {0.0, 0.03, -0.03, 0.1, -0.1, 0.3, -0.3}) {
@@ -167,7 +168,7 @@ class BestVelocity {
       for (const double turn : {0.0, 0.01, -0.01, 0.03, -0.03, 0.1, -0.1, 0.4, -0.4}) {
         Vec3 control{{speed, turn * self_.turn_rate, 0.0}};
         double angle = control[1] * self_.world().step_time;
-        if (car != nullptr) control = steered(self_, *car, speed, kPi * turn, angle);
+        if (car) control = steered(self_, *car, speed, kPi * turn, angle);
         const double gain = aligned(rotate(self_.heading, unit(angle))) + speed * dot(self_.heading, ahead_) * rate_;
         if (gain <= most) continue;
         const double room = room_with(self_, control);
@@ -180,8 +181,8 @@ class BestVelocity {
     const World& world = self_.world();
     const State& state = self_.state();
     const Vec2 way = state.goal[self_.row].position() - self_.position;
-    if (!std::holds_alternative<DiffOptions>(world.drive[self_.object]) ||
-        !turns_at_goal(world, state, self_.row, self_.object) || !(norm(way) < world.goal_threshold[self_.object]))
+    if (!turns_in_place(world.drive[self_.object]) || !turns_at_goal(world, state, self_.row, self_.object) ||
+        !(norm(way) < world.goal_threshold[self_.object]))
       return;
     const double rate = yaw_rate_to_goal(world, state, self_.row, self_.object);
     for (const double share : {1.0, 0.5, 0.25}) {
@@ -199,7 +200,7 @@ class BestVelocity {
     Intent intent = std::holds_alternative<std::monostate>(drive) ? Intent::of_velocity(best_.velocity)
                                                                   : Intent::of_control(best_.control);
     intent.infeasible = best_.room < 0.0;
-    intent.final = std::holds_alternative<DiffOptions>(drive);
+    intent.final = turns_in_place(drive);
     return intent;
   }
 

@@ -20,7 +20,7 @@ constexpr double kFar = 1e6;          // way of what cannot brake [m]
 /// Which components of a control are what, and which of them a stop leaves alone.
 struct Components {
   int travel = 0, yaw = -1;
-  const AckerOptions* car = nullptr;
+  std::optional<Car> car;
 };
 
 Components components_of(const Drive& drive) {
@@ -29,7 +29,7 @@ Components components_of(const Drive& drive) {
     const Rows rows_of = rows(options);
     found.travel = rows_of.travel, found.yaw = rows_of.yaw;
   });
-  found.car = std::get_if<AckerOptions>(&drive);
+  found.car = car_of(drive);
   return found;
 }
 
@@ -165,7 +165,7 @@ double way_with(const Ahead& ahead, int c) {
   return speed * ahead.world.step_time + std::fabs(stopping_way(speed, change, ahead.world.step_time));
 }
 
-double car_turn(const AckerOptions& car, double way) {
+double car_turn(const Car& car, double way) {
   return way * std::tan(std::min(car.psi_max, kSteep)) / (car.wheelbase > 0.0 ? car.wheelbase : 1.0);
 }
 
@@ -184,7 +184,7 @@ Vec3 Ahead::limited(Vec3 wanted) const {
 }
 
 Vec3 Ahead::braking() const {
-  const bool car = std::holds_alternative<AckerOptions>(world.drive[object]);
+  const bool car = steers(world.drive[object]);
   return braking_control(world.drive[object],
                          car ? state.extra[static_cast<std::size_t>(row) * state.extra_rows] : 0.0);
 }

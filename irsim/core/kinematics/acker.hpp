@@ -6,8 +6,6 @@
 
 namespace irsim {
 
-enum class Steering { steer, angular };
-
 struct AckerOptions {
   bool noise;
   std::array<double, 4> alpha;
@@ -39,10 +37,8 @@ inline Vec3 constrain(const AckerOptions& options, Vec3 control) {
   return control;
 }
 
-/// The largest angle to which behaviors steer the wheels. Where these turn at a limited rate and have no limit of their
-/// own, that is 45 degrees: from larger angles they would come back too late.
-inline double steering_range(const AckerOptions& options) {
-  return options.mode == Steering::steer ? options.psi_max : std::min(options.psi_max, 0.25 * kPi);
+inline std::optional<Car> steering(const AckerOptions& options) {
+  return Car{options.mode, options.wheelbase, options.psi_max, 0.0, false};
 }
 
 /// Steer straight toward the wanted direction; in mode `angular` the wheels turn there at a limited rate. A car turns

@@ -24,10 +24,12 @@ constexpr double kMaxCarAngle = 1.2;         // largest angle between the headin
 constexpr double kStuckShare = 0.1;          // a car below this share of its wanted speed backs up
 constexpr double kBackingShare = 0.3;        // share of its speed at which a car wants to back up
 constexpr double kMaxBackingSteering = 0.5;  // largest steering angle of a car that backs up [rad]
-constexpr double kMinCarShare = 0.2;  // smallest share of a wanted speed, because a car turns only while it rolls
-constexpr double kLeanSpeed = 1e-7;   // velocities of a mirrored pair differ by less [m/s]
-constexpr double kLeanShare = 0.2;    // what one of a mirrored pair takes over from the share of the other
-constexpr double kLeanTurn = 15.0;    // turn of the wanted velocity where a pair is on one line [degrees]
+constexpr double kMinCarShare = 0.2;     // smallest share of a wanted speed, because a car turns only while it rolls
+constexpr double kMostFrontAngle = 1.0;  // largest angle of a driven wheel for smaller heading errors [rad]
+constexpr double kMinFrontShare = 0.4;   // smallest share of its speed that a driven wheel counts as taking ahead
+constexpr double kLeanSpeed = 1e-7;      // velocities of a mirrored pair differ by less [m/s]
+constexpr double kLeanShare = 0.2;       // what one of a mirrored pair takes over from the share of the other
+constexpr double kLeanTurn = 15.0;       // turn of the wanted velocity where a pair is on one line [degrees]
 
 /// Largest speed [m/s] in every direction, or forward for drives that cannot move sideways.
 double top_speed(const OrcaSettings& options, const World& world, const State& state, int row, int object) {
@@ -75,8 +77,9 @@ void face_ahead(Vec2 heading, std::vector<HalfPlane>& planes, Vec2& preferred) {
   if (!ahead) preferred = (cross(heading, preferred) > 0.0 ? left : right) * norm(preferred);
 }
 
-/// Controls with which a car realises `velocity`. Steering acts in the next period, at whose end the heading is right.
-Vec3 car_control(const AckerOptions& car, const World& world, const State& state, int row, Vec2 velocity, double most) {
+/// Controls with which a car realises `velocity`. At the end of the next period the heading is right, if the angle acts
+/// in that one and in a share of this one.
+Vec3 car_control(const Car& car, const World& world, const State& state, int row, Vec2 velocity, double most) {
   const double speed = norm(velocity), dt = world.step_time, psi = state.extra[std::size_t(row) * state.extra_rows];
   const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0;
   Vec3 control;
@@ -84,9 +87,15 @@ Vec3 car_control(const AckerOptions& car, const World& world, const State& state
   if (speed > kMinSpeed) {
     const Vec2 heading = state.heading(row);
     control[0] = std::min(std::max(dot(heading, velocity), kMinCarShare * speed), most);
+    if (car.front) control[0] /= std::max(std::cos(psi), kMinFrontShare);
     const double rolling = std::max(control[0], kMinCarShare * kMinCarShare);
     const double error = std::atan2(cross(heading, velocity), dot(heading, velocity));
-    target = std::atan(error * wheelbase / (rolling * dt) - std::tan(psi) * control[0] / rolling);
+    const double now = car.yaw(psi) * control[0] / rolling;
+    target = car.angle_for((error * wheelbase / (rolling * dt) - (1.0 - car.acts) * now) / (1.0 + car.acts));
+    if (car.front) {  // a wheel that stands across takes the body nowhere
+      const double across = std::max(std::fabs(error), kMostFrontAngle);
+      target = clip(target, -across, across);
+    }
   }
   const double range = steering_range(car);
   control[1] = car.mode == Steering::steer ? target : (clip(target, -range, range) - psi) / dt;
@@ -106,8 +115,8 @@ double fastest_along(Vec2 direction, const HalfPlane* planes, int count) {
 /// Find controls with which a blocked car backs up as fast as the obstacles behind it allow, turning toward
 /// `preferred`. Returns false if that is not faster than `ahead` [m/s]. The first two planes come from `face_ahead`,
 /// which are reversed.
-bool back_off(const AckerOptions& car, const World& world, const State& state, int row, double speed, int hard,
-              double ahead, Vec2 preferred, OrcaCrowd& all, Vec3& control) {
+bool back_off(const Car& car, const World& world, const State& state, int row, double speed, int hard, double ahead,
+              Vec2 preferred, OrcaCrowd& all, Vec3& control) {
   const Vec2 heading = state.heading(row), behind = heading * -1.0;
   for (int k = 0; k < 2; ++k) all.planes[k].direction = all.planes[k].direction * -1.0;
   Vec2 found;
@@ -311,8 +320,8 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
     const Vec2 straight = preferred_velocity(options, world, state, row, i, speed, way, far);
     const Vec2 past = past_walls(decision, k, agent.position, agent.radius, kWallLook, straight, false);
     Vec2 preferred = sidestepped(decision, k, past, options.sidestep.value_or(0.0));
-    const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
-    if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
+    const std::optional<Car> car = car_of(world.drive[i]);
+    if (car) face_ahead(state.heading(row), all.planes, preferred);
     if (const Route* route = state.route_of(row)) {  // a route already avoids static objects
       const OrcaAgent inner{state.pose[row].position(), agent.velocity, route->wall_radius};
       avoid_obstacles(std::min(options.timeHorizonObst, kRouteHorizon), world, fixed, inner, i, speed, ahead, all);
@@ -341,7 +350,7 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
     Turning turning = turning_for(world, state, row, squared(velocity - preferred) > 0.0);
     // The heading may lead into a wall even if the wanted velocity does not.
     if (hard > 0) turning.max_forward = fastest_along(state.heading(row), all.planes.data(), hard);
-    if (car != nullptr) {
+    if (car) {
       Vec3 control;
       const double ahead = std::min(norm(velocity), turning.max_forward);
       const bool stuck = ahead < kStuckShare * norm(preferred) && state.vel_min[row][0] < 0.0;

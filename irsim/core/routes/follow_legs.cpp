@@ -11,13 +11,13 @@ constexpr int kMaxBlockedSteps = 30;   // a leg that is blocked for more steps t
 
 }  // namespace
 
-double Follower::max_steering(const AckerOptions& car) const {
+double Follower::max_steering(const Car& car) const {
   const double psi = std::min(steering_range(car), 1.4);
   return car.mode == Steering::steer ? std::min(psi, state_.vel_max[row_][1]) : psi;
 }
 
 void Follower::follow_legs(Vec3& u) {
-  if (std::holds_alternative<AckerOptions>(world_.drive[object_])) {
+  if (steers(world_.drive[object_])) {
     follow_legs_by_pursuit(u);
   } else {
     follow_legs_in_place(u);
@@ -40,7 +40,7 @@ void Follower::follow_legs(Vec3& u) {
     return;
   }
   u = {};
-  if (std::holds_alternative<AckerOptions>(world_.drive[object_])) hold_steering(u);
+  if (steers(world_.drive[object_])) hold_steering(u);
   if (++route_.blocked_steps > kMaxBlockedSteps && !route_.retreats) {
     route_.blocked_steps = 0;
     plan();
@@ -48,16 +48,16 @@ void Follower::follow_legs(Vec3& u) {
 }
 
 bool Follower::slow_down_on_leg(Vec3& u) {
-  const auto* car = std::get_if<AckerOptions>(&world_.drive[object_]);
-  const double psi = car == nullptr ? 0.0 : state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
-  const double most = car == nullptr ? 0.0 : max_steering(*car);
+  const std::optional<Car> car = car_of(world_.drive[object_]);
+  const double psi = !car ? 0.0 : state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
+  const double most = !car ? 0.0 : max_steering(*car);
   // A retreat need not follow the track closely: a car may turn away from what is beside it.
   for (const double turn : {0.0, 0.3, -0.3, 0.8, -0.8}) {
-    if (turn != 0.0 && (car == nullptr || !route_.retreats)) break;
+    if (turn != 0.0 && (!car || !route_.retreats)) break;
     for (const double share : {1.0, 0.5, 0.25, 0.1}) {
       Vec3 v = u;
       v[0] *= share;
-      if (car == nullptr) v[1] *= share;
+      if (!car) v[1] *= share;
       if (turn != 0.0) {
         const double planned = car->mode == Steering::steer ? v[1] : psi + v[1] * world_.step_time;
         const double wanted = clip(planned + turn, -most, most);
@@ -104,7 +104,7 @@ void Follower::follow_legs_in_place(Vec3& u) {
 }
 
 void Follower::follow_legs_by_pursuit(Vec3& u) {
-  const auto& car = std::get<AckerOptions>(world_.drive[object_]);
+  const Car car = *car_of(world_.drive[object_]);
   const Pose& pose = state_.pose[row_];
   const std::vector<Leg>& legs = route_.legs;
   u = {};

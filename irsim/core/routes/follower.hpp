@@ -89,8 +89,8 @@ class Follower {
   bool attempt(const Body& wide, const Body& tight, bool search);
 
   /// Radius of the turning circle that plans of a car use [m].
-  double turning_radius(const AckerOptions& car) const;
-  double max_steering(const AckerOptions& car) const;
+  double turning_radius(const Car& car) const;
+  double max_steering(const Car& car) const;
   /// The command that continues along the legs, which are cleared when the last one is finished.
   void follow_legs(Vec3& u);
   /// Slow down where the command would lead to a collision, or turn aside during a retreat. Returns false if nothing

@@ -152,7 +152,7 @@ void Follower::keep_apart(Vec3& u) {
     return;
   find_sides();
   if (work_.sides.empty() || clear_after(u)) return work_.sides.clear();
-  const auto* car = std::get_if<AckerOptions>(&world_.drive[object_]);
+  const std::optional<Car> car = car_of(world_.drive[object_]);
   const bool sideways = moves_sideways(world_.drive[object_]);
   bool found = false;
   const auto attempt = [&](const Vec3& command) {
@@ -168,24 +168,24 @@ void Follower::keep_apart(Vec3& u) {
     v[2] *= turn;
     return v;
   };
-  if (car == nullptr) {
+  if (!car) {
     if (const std::optional<Vec3> along = along_sides(u)) attempt(*along);
   }
   for (const double turn : {1.0, 0.0}) {
     for (const double share : {0.5, 0.25, 0.1, 0.0}) {
-      if (car == nullptr || share > 0.0) attempt(slowed(share, car != nullptr ? 1.0 : turn));
+      if (!car || share > 0.0) attempt(slowed(share, car ? 1.0 : turn));
     }
   }
   if (!found) {
-    u = slowed(0.0, car != nullptr ? 1.0 : 0.0);
-    if (car != nullptr) {  // whichever way it is to leave, one of both steerings may be free: straight, or as wanted
+    u = slowed(0.0, car ? 1.0 : 0.0);
+    if (car) {  // whichever way it is to leave, one of both steerings may be free: straight, or as wanted
       const double psi = state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
       if (std::fabs(psi) > kRounding) u[1] = car->mode == Steering::steer ? 0.0 : -psi / world_.step_time;
     }
     if (glides_ && !stays_on_sides(u)) u = braking();
   }
   work_.sides.clear();
-  if (!found && car != nullptr) hold_steering(u);
+  if (!found && car) hold_steering(u);
 }
 
 }  // namespace irsim

@@ -126,7 +126,7 @@ void Follower::plan() {
       if (found || !attempt(Body::disc(extent.reach + share * margin), ahead, true)) continue;
       found = true;
       // The body can turn anywhere along this path. A car hardly turns on the spot, so it may pass closer to walls.
-      if (std::holds_alternative<AckerOptions>(world_.drive[object_])) continue;
+      if (steers(world_.drive[object_])) continue;
       route_.wall_margin = kLocalShare * share * margin;
       // Other bodies mostly reach less far than that, which is margin enough.
       route_.wall_radius = extent.reach + (round ? route_.wall_margin : 0.0);
@@ -138,8 +138,7 @@ void Follower::plan() {
     }
     found = found || (!round && (attempt(easy, ahead, true) || attempt(ahead, ahead, true)));
   }
-  if (std::holds_alternative<AckerOptions>(world_.drive[object_]) || !route_.legs.empty())
-    route_.wall_margin = kLegMargin;
+  if (steers(world_.drive[object_]) || !route_.legs.empty()) route_.wall_margin = kLegMargin;
   if (!route_.path.empty()) return;
   if (route_.parked.empty()) return report_no_path();
   route_.parked.clear();  // there is no way round them, so the path leads past them
@@ -166,9 +165,9 @@ void Follower::report_if_stuck() {
 
 bool Follower::find_legs(double reach, int most) {
   const Drive& drive = world_.drive[object_];
-  const auto* car = std::get_if<AckerOptions>(&drive);
-  if (car == nullptr && !std::holds_alternative<DiffOptions>(drive)) return false;
-  const double radius = car == nullptr ? 0.0 : turning_radius(*car);
+  const std::optional<Car> car = car_of(drive);
+  if (!car && !turns_in_place(drive)) return false;
+  const double radius = !car ? 0.0 : turning_radius(*car);
   const double room = inner_radius(shapes_, object_);
   const bool backs = state_.vel_min[row_][0] < 0.0;
   const PoseProblem problem{blockers_,
@@ -197,18 +196,17 @@ bool Follower::find_legs(double reach, int most) {
   return true;
 }
 
-double Follower::turning_radius(const AckerOptions& car) const {
+double Follower::turning_radius(const Car& car) const {
   return car.wheelbase / std::tan(kSteeringShare * max_steering(car));
 }
 
 bool Follower::parks() const {
-  return world_.state_arrival[object_] && !std::isnan(state_.goal[row_].theta) &&
-         std::holds_alternative<AckerOptions>(world_.drive[object_]);
+  return world_.state_arrival[object_] && !std::isnan(state_.goal[row_].theta) && steers(world_.drive[object_]);
 }
 
 bool Follower::parking_is_due() const {
   if (!parks() || !route_.legs.empty() || route_.retreats || route_.path.empty() || state_.arrived[row_]) return false;
-  const double near = kParkingRadii * turning_radius(std::get<AckerOptions>(world_.drive[object_]));
+  const double near = kParkingRadii * turning_radius(*car_of(world_.drive[object_]));
   if (norm(route_.goal - position()) > near) return false;
   const double age = static_cast<double>(state_.count[w_] - route_.parking_at) * world_.step_time;
   return route_.parking_at < 0 || age >= kTimeBetweenParkings;

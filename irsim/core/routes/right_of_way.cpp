@@ -165,9 +165,9 @@ bool Follower::plan_among_others() {
 }
 
 void Follower::recover() {
-  const bool steers = std::holds_alternative<AckerOptions>(world_.drive[object_]) ||
-                      (std::holds_alternative<DiffOptions>(world_.drive[object_]) && !route_.legs.empty());
-  if (!steers || std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) return;
+  const bool turns_round =
+      steers(world_.drive[object_]) || (turns_in_place(world_.drive[object_]) && !route_.legs.empty());
+  if (!turns_round || std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) return;
   if (route_.retreats) {
     if (state_.count[w_] < route_.wait_until) return;
     const bool blocked = !route_.legs.empty();

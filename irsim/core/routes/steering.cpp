@@ -33,20 +33,19 @@ void Follower::steer_to_corner(Vec3& u) {
     most = std::max(most, 0.05);
   }
   with(world_.drive[object_], [&](const auto& drive) {
-    using Drive = std::decay_t<decltype(drive)>;
-    if constexpr (std::is_same_v<Drive, DiffOptions>) {
+    if (is_diff(drive)) {
       const double rate = stopping_speed(std::fabs(error), 1, std::fabs(top[1]));
       u[1] = error > 0.0 ? rate : -rate;
       u[0] = std::fabs(error) > kMaxHeadingError ? 0.0 : std::min(u[0], most);
-    } else if constexpr (std::is_same_v<Drive, OmniOptions> || std::is_same_v<Drive, OmniAngularOptions>) {
+    } else if (rows(drive).travel == 2) {
       const double c = std::cos(error), s = std::sin(error);
       const double speed = std::min(
           {std::fabs(top[0]) / std::max(std::fabs(c), 1e-9), std::fabs(top[1]) / std::max(std::fabs(s), 1e-9), most});
       u[0] = speed * c, u[1] = speed * s;
-    } else if constexpr (std::is_same_v<Drive, AckerOptions>) {
-      const double most_psi = max_steering(drive), psi = clip(error, -most_psi, most_psi);
+    } else if (const std::optional<Car> car = steering(drive)) {
+      const double most_psi = max_steering(*car), psi = clip(error, -most_psi, most_psi);
       const double now = state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
-      u[1] = drive.mode == Steering::steer ? psi : (psi - now) / world_.step_time;
+      u[1] = car->mode == Steering::steer ? psi : (psi - now) / world_.step_time;
       u[0] = std::min(u[0], std::max(most, 0.3 * top[0]));
     }
   });
@@ -67,8 +66,8 @@ void Follower::slow_down_to_goal(Vec3& u) const {
 }
 
 void Follower::back_off_from_goal() {
-  const auto* car = std::get_if<AckerOptions>(&world_.drive[object_]);
-  if (car == nullptr || route_.next + 1 < route_.path.size() || route_.backing_steps > 0) return;
+  const std::optional<Car> car = car_of(world_.drive[object_]);
+  if (!car || route_.next + 1 < route_.path.size() || route_.backing_steps > 0) return;
   const Vec2 way = state_.goal[row_].position() - position();
   const double threshold = world_.goal_threshold[object_];
   if (norm(way) < threshold) return;
@@ -79,7 +78,7 @@ void Follower::back_off_from_goal() {
 
 void Follower::keep_clear(Vec3& u) {
   if (std::holds_alternative<std::monostate>(world_.drive[object_]) || !clear_at(state_.pose[row_])) return;
-  const bool car = std::holds_alternative<AckerOptions>(world_.drive[object_]);
+  const bool car = steers(world_.drive[object_]);
   const int moving = std::holds_alternative<OmniOptions>(world_.drive[object_]) ||
                              std::holds_alternative<OmniAngularOptions>(world_.drive[object_])
                          ? 2
@@ -157,7 +156,7 @@ void Follower::hold_steering(Vec3& u) {
 
 void Follower::brake(Vec3& u) {
   u = glides_ ? braking() : Vec3{};
-  if (std::holds_alternative<AckerOptions>(world_.drive[object_])) hold_steering(u);
+  if (steers(world_.drive[object_])) hold_steering(u);
 }
 
 void Follower::measure_gap() {
@@ -206,7 +205,7 @@ bool Follower::clear_between(const Pose& pose, const Vec3& twist, double from, d
 
 bool Follower::clear_after(const Vec3& command) {
   if (glides_ && !stays_on_sides(command)) return false;
-  const bool car = std::holds_alternative<AckerOptions>(world_.drive[object_]);
+  const bool car = steers(world_.drive[object_]);
   Pose pose = state_.pose[row_];
   Vec3 control = state_.control[row_], wanted = command, twist;
   const double* extra = &state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];

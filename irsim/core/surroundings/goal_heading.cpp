@@ -37,7 +37,7 @@ bool is_run_into(const World& world, const State& state, int row, int object) {
 bool turns_at_goal(const World& world, const State& state, int row, int object) {
   if (!world.state_arrival[object] || std::isnan(state.goal[row].theta)) return false;
   const Drive& drive = world.drive[object];
-  return std::holds_alternative<DiffOptions>(drive) || std::holds_alternative<OmniAngularOptions>(drive);
+  return turns_in_place(drive) || std::holds_alternative<OmniAngularOptions>(drive);
 }
 
 double speed_to_goal(const World& world, const State& state, int row) {
@@ -46,7 +46,7 @@ double speed_to_goal(const World& world, const State& state, int row) {
 }
 
 double yaw_rate_to_goal(const World& world, const State& state, int row, int object) {
-  const int yaw = std::holds_alternative<DiffOptions>(world.drive[object]) ? 1 : 2;
+  const int yaw = turns_in_place(world.drive[object]) ? 1 : 2;
   const double error = wrap(state.goal[row].theta - state.pose[row].theta), dt = world.step_time;
   const double left = std::fabs(error),
                rate = std::min(left / dt, speed_to_stop_within(left, state.acce[row][yaw], dt));
@@ -74,8 +74,7 @@ void brake_and_turn(const World& world, const State& state, int row, int object,
 
 void face_goal(const World& world, const State& state, int row, int object, Vec3& control) {
   if (!turns_at_goal(world, state, row, object)) return;
-  if (std::holds_alternative<DiffOptions>(world.drive[object]))
-    return brake_and_turn(world, state, row, object, control);
+  if (turns_in_place(world.drive[object])) return brake_and_turn(world, state, row, object, control);
   const double gap = norm(state.goal[row].position() - state.pose[row].position());
   const double threshold = world.goal_threshold[object];
   if (state.arrived[row] || !(gap <= threshold)) return;

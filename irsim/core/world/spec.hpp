@@ -6,7 +6,6 @@
 
 #include "behaviors.gen.hpp"
 #include "fields.hpp"
-#include "kinematics.gen.hpp"
 #include "routes/route.hpp"
 #include "sensors.gen.hpp"
 #include "shapes.gen.hpp"

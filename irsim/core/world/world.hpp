@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "contact/bodies.hpp"
+#include "drives.hpp"
 #include "geometry/vec.hpp"
-#include "kinematics.gen.hpp"
 #include "sensing/fog.hpp"
 #include "world/scene.hpp"
 #include "world/variation.hpp"

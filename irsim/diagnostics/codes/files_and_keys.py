@@ -263,7 +263,7 @@ MAPS_AND_LIMITS: dict[str, Code] = {
         "heading of the goal is not steered for",
         "With 'arrive_mode: state' an arrival needs position and heading. Under every built-in behavior 'diff' and "
         "'omni_angular' turn to the goal's heading once they are within 'goal_threshold' of the position. A car "
-        "('acker') cannot turn on the spot: only 'follow' plans its way so that it comes in with the heading. "
+        "('acker', 'tricycle') does not turn there: only 'follow' plans its way so that it comes in with the heading. "
         "'omni' keeps the heading of its start.",
     ),
     "steering-limit": Code(

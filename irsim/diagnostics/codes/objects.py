@@ -34,7 +34,8 @@ OBJECTS: dict[str, Code] = {
     ),
     "state-truncated": Code(
         "state has too many numbers",
-        "A state has three numbers, for acker four; the others are dropped. A decimal comma makes two numbers of one.",
+        "A state has three numbers, for acker and other drives more; the others are dropped. A decimal comma makes two "
+        "numbers of one.",
     ),
     "surplus-states": Code(
         "more states than objects",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -178,10 +179,10 @@ def _dart(r: float, half_length: float | None, middle: tuple[float, float]) -> F
 
 
 def _wheels(thing: Thing, layout: Layout, theme: Theme, alpha: float) -> list[Mark]:
-    """The wheels of a car, of which the front ones are turned by its steering angle."""
+    """The wheels of a car, of which the front ones are turned by its steering angle; a tricycle has one in front."""
     record, body = thing.record, thing.body
-    drive = getattr(record.kinematics, "name", "")
-    if drive != "acker" or body.length * layout.scale < MIN_WHEELED or not record.wheelbase:
+    drive: Any = record.kinematics
+    if not getattr(drive, "steered", False) or body.length * layout.scale < MIN_WHEELED or not record.wheelbase:
         return []
     state = thing.view.state[:, 0]
     steering = float(state[3]) if len(state) > 3 else 0.0
@@ -189,7 +190,7 @@ def _wheels(thing: Thing, layout: Layout, theme: Theme, alpha: float) -> list[Ma
     wheel = Region([np.array([(-long, -wide), (long, -wide), (long, wide), (-long, wide)])])
     marks = list[Mark]()
     for x, angle in ((0.0, 0.0), (float(record.wheelbase), steering)):
-        for side in (-1, 1):
+        for side in (0,) if x and drive.pivots else (-1, 1):
             turned = place(wheel, (x, body.middle[1] + side * (body.width / 2 - wide), angle))
             shape: Geometry = place(turned, thing.drawn_at)
             marks.append(Mark(thing.number, "arrow", shape, theme.ink, Stroke(None), alpha, _ROBOT_Z))

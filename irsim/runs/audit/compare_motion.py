@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 from irsim.runs.audit.artifact import Artifact, Body
+from irsim.runs.audit.drives import INNER, ends_of
 from irsim.runs.audit.report import Report
 from irsim.runs.audit.strides import Strides
 
@@ -17,10 +18,12 @@ __all__ = ["compare_limits", "compare_motion"]
 
 _SHARE = 3e-7
 """Rounding of the recorded controls, which have single precision, as a share of them."""
+_INNER_SHARE = 3e-6
+"""The same where controls act through inner states, in which their rounding gathers."""
 _ROUNDING = 1e-8
 """Rounding of poses: [m] and [rad]."""
 _YAW = {"diff": 1, "omni_angular": 2}
-_DRIVES = ("diff", "omni", "omni_angular", "acker")
+_DRIVES = ("diff", "omni", "omni_angular", "acker", *INNER)
 
 
 def _is_known(artifact: Artifact, body: Body) -> str | None:
@@ -92,6 +95,11 @@ def _tell(
 def _driven(artifact: Artifact, body: Body, row: int, strides: Strides) -> tuple[Floats, Floats]:
     """(T - 1, 3) poses that the drive reaches from each pose, and (T - 1,) how far they may be off."""
     control, pose = artifact.control[1:, row], artifact.pose[:-1, row]
+    if body.drive in INNER:
+        wanted = ends_of(artifact, body, row, strides.stop[:, row])
+        size = np.abs(control).sum(axis=1) * (1 + artifact.step_time)
+        slack = _ROUNDING * (1.0 + 1e-2 * np.abs(np.nan_to_num(pose[:, :2])).max(axis=1))
+        return wanted, slack + _INNER_SHARE * size * artifact.step_time
     time = artifact.step_time * strides.stop[:, row]
     forward, lateral, rate = control[:, 0], np.zeros(len(control)), np.zeros(len(control))
     slope = np.ones(len(control))

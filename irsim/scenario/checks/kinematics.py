@@ -51,7 +51,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             fix=f"use a length of more than {record.wheelbase:g}, or a wheelbase of about {round(0.6 * length, 3):g}",
         )
     steering = max(abs(record.vel_min[1]), abs(record.vel_max[1])) if record.vel_dim > 1 else 0.0
-    if not wrong and options.steered and options.mode != "angular" and steering >= math.pi / 2:
+    if not wrong and options.steered and not options.pivots and options.mode != "angular" and steering >= math.pi / 2:
         key = "vel_max" if context.is_given(record, "vel_max") else "vel_min"
         yield warning(
             "steering-limit",
@@ -60,7 +60,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             given=getattr(record, key),
             fix=f"angles are in radians: {steering:g} degrees are {math.radians(steering):.4g}",
         )
-    if (getattr(options, "psi_max", None) or 0.0) > _QUARTER_TURN:
+    if not options.pivots and (getattr(options, "psi_max", None) or 0.0) > _QUARTER_TURN:
         yield warning(
             "steering-limit",
             (*context.entry_path(record, "kinematics"), "psi_max"),

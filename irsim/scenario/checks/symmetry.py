@@ -100,7 +100,7 @@ def _needs_other(record: ObjectRecord, count: int) -> bool:
 
 
 def _is_car(record: ObjectRecord) -> bool:
-    return _options(record).name in _NOT_FOR_CARS and getattr(record.kinematics, "name", "") == "acker"
+    return _options(record).name in _NOT_FOR_CARS and getattr(record.kinematics, "steered", False)
 
 
 def _cure(record: ObjectRecord, count: int) -> str:

@@ -57,13 +57,8 @@ def kernels_of(record: ObjectRecord, group_behavior: BehaviorOptions | None, zon
     if isinstance(options, Follow):
         route, options = _route_options(options, zones), options.local
     if record.kinematics is not None:
-        psi_max = getattr(record.kinematics, "psi_max", None)
-        drive = kernel_options(
-            KINEMATICS,
-            record.kinematics,
-            wheelbase=record.wheelbase or 1.0,
-            psi_max=float("inf") if psi_max is None else psi_max,
-        )
+        limits = {name: float("inf") for name, value in record.kinematics if value is None}
+        drive = kernel_options(KINEMATICS, record.kinematics, **{**limits, "wheelbase": record.wheelbase or 1.0})
         if options is not None and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None:
             behavior = kernel_options(BEHAVIORS, options)
     return Kernels(parts, drive, behavior, route, [kernel_options(SENSORS, sensor) for sensor in record.sensors])

@@ -1,9 +1,9 @@
 """``openscenario``: trajectories as an OpenSCENARIO 1.0 file, for esmini and CARLA's ScenarioRunner.
 
-Each object is an entity that is put at its first pose and follows its recorded trajectory in time. Cars (drive
-``acker``) are vehicles, other objects that can move are pedestrians, the rest are obstacles. The frame is irsim's,
-x forward, y to the left, heading counterclockwise, moved by the options `x`, `y` and `yaw`. Options `roads`,
-`pedestrian` and `car` name the road network and the models.
+Each object is an entity that is put at its first pose and follows its recorded trajectory in time. Cars (drives that
+steer, such as ``acker``) are vehicles, other objects that can move are pedestrians, the rest are obstacles. The frame
+is irsim's, x forward, y to the left, heading counterclockwise, moved by the options `x`, `y` and `yaw`. Options
+`roads`, `pedestrian` and `car` name the road network and the models.
 """
 
 from __future__ import annotations
@@ -179,7 +179,7 @@ def _header(writer: _Writer, episode: ExportedEpisode, roads: str) -> None:
 def _entity(writer: _Writer, actor: Actor, agent: SceneObject, options: OpenScenarioOptions) -> None:
     """An object with its box."""
     with writer.element("ScenarioObject", name=actor.name):
-        if actor.drive == "acker":
+        if agent.steered:
             with writer.element("Vehicle", name=options.car, vehicleCategory="car"):
                 _box(writer, agent, _CAR)
                 speed = agent.high[0] if agent.high and np.isfinite(agent.high[0]) else _FOREVER

@@ -1,0 +1,131 @@
+"""Where drives with inner states take a body, step by step: written out in Python, without the engine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from irsim.common.angles import wrap
+from irsim.common.arrays import Floats
+from irsim.runs.audit.artifact import Artifact, Body
+
+__all__ = ["INNER", "ends_of"]
+
+_SUB_STEP = 0.01
+"""Longest part of a step [s]."""
+Step = Callable[[list[float], list[float], float], None]
+"""Advances x, y, heading and inner state under a control by a step, in place; the heading is not wrapped."""
+
+
+def _arc(state: list[float], forward: float, lateral: float, rate: float, dt: float) -> None:
+    half = 0.5 * rate * dt
+    chord = dt * float(np.sinc(half / math.pi))
+    c, s = math.cos(state[2] + half), math.sin(state[2] + half)
+    state[0] += (forward * c - lateral * s) * chord
+    state[1] += (forward * s + lateral * c) * chord
+    state[2] += rate * dt
+
+
+def _tricycle(body: Body, exact: bool) -> Step:
+    options = body.options.kinematics or {}
+    wheelbase = body.options.wheelbase or 1.0
+    most, lag = _number(options, "psi_max", math.pi / 2), _number(options, "steer_lag", 0.0)
+    rate, acce = _number(options, "steer_rate", math.inf), _number(options, "steer_acce", math.inf)
+    by_rate, ideal = options.get("mode") == "angular", lag == 0 and math.isinf(rate) and math.isinf(acce)
+
+    def turn_wheel(state: list[float], wanted: float, dt: float) -> None:
+        """Turn the wheel for a time; without a limit of the acceleration in one go."""
+        psi, before, change = state[3], state[4], acce * dt
+        kept = math.exp(-dt / lag) if lag else 0.0
+        if by_rate:
+            target = min(max(wanted, -rate), rate)
+            free = target + (before - target) * kept
+            state[4] = min(max(free, before - change), before + change)
+            way = 0.5 * (before + state[4]) * dt
+            if state[4] == free:
+                way = target * dt + (before - target) * lag * (1 - kept)
+        else:
+            error = min(max(wanted, -most), most) - psi
+            left = abs(error)
+            fast = max(0.0, left / rate - lag)
+            way = rate * min(fast, dt) if fast > 0 else 0.0
+            if dt > fast:
+                way += (left - way) * (1 - math.exp((fast - dt) / lag) if lag else 1.0)
+            if math.isfinite(acce):
+                count = math.floor(-0.5 + math.sqrt(0.25 + 2 * left / (change * dt)))
+                way = min(way, dt * (left / (dt * (count + 1)) + 0.5 * count * change))
+            way = dt * min(max(math.copysign(way, error) / dt, before - change), before + change)
+            state[4] = way / dt
+        state[3] = min(max(psi + way, -most), most)
+        if state[3] != psi + way:
+            state[4] = 0.0
+
+    def step(state: list[float], control: list[float], dt: float) -> None:
+        parts = max(1, math.ceil(dt / _SUB_STEP - 1e-9))
+        speed, psi = control[0], state[3]
+        if ideal or not exact:
+            forward, turn = speed * math.cos(psi), speed * math.sin(psi) / wheelbase
+            if exact:
+                _arc(state, forward, 0.0, turn, dt)
+            else:
+                state[0] += forward * math.cos(state[2]) * dt
+                state[1] += forward * math.sin(state[2]) * dt
+                state[2] += turn * dt
+        for _ in range(parts):
+            psi = state[3]
+            turn_wheel(state, control[1], dt / parts)
+            if exact and not ideal:
+                middle = 0.5 * (psi + state[3])
+                _arc(state, speed * math.cos(middle), 0.0, speed * math.sin(middle) / wheelbase, dt / parts)
+
+    return step
+
+
+def _number(options: dict[str, Any], key: str, default: float) -> float:
+    value = options.get(key)
+    return float(value) if isinstance(value, (int, float)) and not math.isnan(value) else default
+
+
+INNER: dict[str, tuple[int, Callable[[Body, bool], Step]]] = {"tricycle": (2, _tricycle)}
+"""Number of inner states and the motion of each drive."""
+
+
+def ends_of(artifact: Artifact, body: Body, row: int, stop: Floats) -> Floats:
+    """(T - 1, 3) poses that a drive with inner states reaches from each recorded pose; they are as at the start.
+
+    Args:
+        artifact: The run.
+        body: The object.
+        row: Its row.
+        stop: (T - 1,) share of each step that it moved before it was stopped.
+    """
+    count, make = INNER[str(body.drive)]
+    exact = artifact.world.integration == "exact"
+    step = make(body, exact)
+    inner = [float(value or 0.0) for value in [*body.facts.state[3:], *[0.0] * count][:count]]
+    pose, control, still = artifact.pose[:, row], artifact.control[:, row], artifact.stopped[:, row]
+    ends = np.full((len(pose) - 1, 3), np.nan)
+    for k in range(len(ends)):
+        if math.isnan(pose[k, 0]) or still[k]:
+            continue
+        state = [*pose[k].tolist(), *inner]
+        step(state, control[k + 1].tolist(), artifact.step_time)
+        inner = state[3:]
+        ends[k] = state[:3]
+    return _stopped_early(pose[:-1], ends, stop, exact)
+
+
+def _stopped_early(pose: Floats, ends: Floats, share: Floats, exact: bool) -> Floats:
+    """Places after a share of each step, on the arc or the line that leads to its end."""
+    way, turn = ends[:, :2] - pose[:, :2], ends[:, 2] - pose[:, 2]
+    half = 0.5 * turn
+    if not exact:
+        return np.column_stack([pose[:, :2] + way * share[:, None], pose[:, 2] + turn * share])
+    scale = share * np.sinc(half * share / np.pi) / np.sinc(half / np.pi)
+    back = -half * (1 - share)
+    c, s = np.cos(back) * scale, np.sin(back) * scale
+    moved = np.column_stack([way[:, 0] * c - way[:, 1] * s, way[:, 0] * s + way[:, 1] * c])
+    return np.column_stack([pose[:, :2] + moved, wrap(pose[:, 2] + turn * share)])
