@@ -166,15 +166,16 @@ class LabelLayer:
 
 
 def _look(label: Label) -> tuple[object, ...]:
-    return label.text, label.color, label.size, label.alpha, label.zorder, label.bold, label.italic, label.halo
+    return label.color, label.size, label.alpha, label.zorder, label.bold, label.italic, label.halo
 
 
 def _change(text: QuickText, before: Label | None, label: Label) -> None:
-    """Let a text show a label; most labels only move."""
+    """Let a text show a label; most labels only move, or say another time."""
     text.move(label.x, label.y)
+    if before is None or before.text != label.text:
+        text.set_text(printable(label.text))
     if before is not None and _look(before) == _look(label):
         return
-    text.set_text(printable(label.text))
     text.set_color(rgba(label.color))
     text.set_fontsize(label.size)
     text.set_alpha(label.alpha)

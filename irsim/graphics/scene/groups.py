@@ -22,14 +22,15 @@ def ranges_between(ends: Sequence[int] | NDArray[np.int64]) -> NDArray[np.int64]
     return ranges
 
 
-def boxes_of(group: Group) -> Floats:
-    """(N, 4) left, bottom, right and top of the shapes of a group [m]."""
-    if len(group.points) == len(group.ranges):
-        low = high = group.points
-    else:
-        starts = group.ranges[:, 0]
-        low, high = np.minimum.reduceat(group.points, starts), np.maximum.reduceat(group.points, starts)
-    reach = np.maximum(group.radii, 0.0)[:, None]
+def boxes_of(groups: Sequence[Group]) -> Floats:
+    """(N, 4) left, bottom, right and top of the shapes of groups, whose points follow one another [m]."""
+    if not groups:
+        return np.empty((0, 4))
+    points = np.concatenate([group.points for group in groups])
+    sizes = np.concatenate([group.ranges[:, 1] - group.ranges[:, 0] for group in groups])
+    reach = np.maximum(np.concatenate([group.radii for group in groups]), 0.0)[:, None]
+    starts = np.cumsum(sizes) - sizes
+    low, high = np.minimum.reduceat(points, starts), np.maximum.reduceat(points, starts)
     return np.concatenate([low - reach, high + reach], axis=1)
 
 
@@ -39,9 +40,9 @@ def kept(group: Group, before: Group | None) -> Group:
         before is not None
         and group.looks == before.looks
         and group.objects == before.objects
-        and np.array_equal(group.points, before.points)
-        and np.array_equal(group.ranges, before.ranges)
-        and np.array_equal(group.radii, before.radii)
+        and group.points.tobytes() == before.points.tobytes()
+        and group.ranges.tobytes() == before.ranges.tobytes()
+        and group.radii.tobytes() == before.radii.tobytes()
     )
     return before if same and before is not None else group
 

@@ -242,7 +242,8 @@ class SceneBuilder:
             style = replace(style, show_arrow=False, show_fov=False, show_goal=style.show_goal and view.role == "robot")
         heading = self.heading_of(view, pose) if style.show_arrow else pose[2]
         body = self.body(view)
-        key = (style, body, pose, str(goal), heading, view.drawing.text, view.drawing.goal_text, view.description)
+        place_of_goal = str(goal) if style.show_goal else ""  # as text, because NaN differs from itself
+        key = (style, body, pose, place_of_goal, heading, view.drawing.text, view.drawing.goal_text, view.description)
         drawn = self._drawn.get(view.id)
         if drawn is None or drawn.key != key:
             drawn = _draw(view, body, style, pose, heading, goal, key, self._has_picture, drawn)
@@ -353,7 +354,7 @@ def _draw(
 
     The mark of a goal that has not changed since ``earlier`` is the same Python object.
     """
-    drawn = _Drawn(key, [], [], None, (style, body, str(goal)))
+    drawn = _Drawn(key, [], [], None, (style, body, str(goal)) if style.show_goal else ())
     marks, number = drawn.marks, view.id
     if style.show_fov and view.fov is not None and view.fov_radius is not None and not view.fov_occlusion:
         marks.append(view_sector(number, view.fov, view.fov_radius, style, pose))

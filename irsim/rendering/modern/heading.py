@@ -35,9 +35,9 @@ def outcome_word(simulation: Simulation, world: int, collisions: int) -> str:
     """The state of an episode so far: start, running, arrived, stopped, timeout, or the number of collisions."""
     if collisions:
         return plural(collisions, "collision")
-    robots = simulation.robots
-    rows = [world * simulation.objects + int(index) for index in np.flatnonzero(robots)]
-    if rows and all(simulation.arrived[row] for row in rows):
+    first = world * simulation.objects
+    arrived = simulation.arrived[first : first + simulation.objects][simulation.robots]
+    if arrived.size and arrived.all():
         return "arrived"
     if int(simulation.count[world]) == 0:
         return "start"
@@ -45,7 +45,7 @@ def outcome_word(simulation: Simulation, world: int, collisions: int) -> str:
     seconds = int(simulation.count[world]) * float(simulation.scenario.world.step_time)
     if limit is not None and seconds >= limit - 1e-9:
         return "timeout"
-    return "stopped" if rows and is_over(simulation, world) else "running"
+    return "stopped" if arrived.size and is_over(simulation, world) else "running"
 
 
 def title_text(name: str, seconds: float, word: str) -> str:

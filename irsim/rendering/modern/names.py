@@ -131,7 +131,7 @@ def place_names(
     taken = [box for mark, box in known.items() if mark.part in _TAKEN or mark.zorder >= _MOVING_Z]
     taken += [_text_box(one, layout, sizes) for one in fixed]
     walls = [box for mark, box in known.items() if mark.part == "body" and mark.zorder < _MOVING_Z]
-    moving = [boxes_of(group) for group in groups if group.part in _TAKEN or group.part == "body"]
+    moving = boxes_of([group for group in groups if group.part in _TAKEN or group.part == "body"])
     plans, ranges = _lines(marks, groups, "plan", layout)
     trails, _ = _lines(marks, groups, "trajectory", layout)
     x0, x1, y0, y1 = layout.world
@@ -149,7 +149,7 @@ def place_names(
         np.array(needed, dtype=np.float64),
         heights,
         (left + 1, bottom + 1, right - 1, top - 1),
-        np.concatenate([np.array(taken).reshape(-1, 4), _in_picture(moving, layout)]),
+        np.concatenate([np.array(taken).reshape(-1, 4), layout.places(moving.reshape(-1, 2)).reshape(-1, 4)]),
         np.array(walls).reshape(-1, 4),
         plans,
         ranges,
@@ -188,11 +188,6 @@ def _box(mark: Mark, layout: Layout) -> Bounds:
         (right - x) * scale + layout.left,
         (top - y) * scale + layout.bottom,
     )
-
-
-def _in_picture(boxes: Sequence[Floats], layout: Layout) -> Floats:
-    """Convert boxes (N, 4) of the world to the picture [u], and join them."""
-    return layout.places(np.concatenate([np.empty((0, 4)), *boxes]).reshape(-1, 2)).reshape(-1, 4)
 
 
 def _text_box(one: Label, layout: Layout, sizes: TextSizes) -> tuple[float, float, float, float]:
