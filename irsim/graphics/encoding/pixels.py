@@ -17,7 +17,9 @@ _WHITE = 255
 def to_image(pixels: Pixels) -> Image.Image:
     """Convert pixels to an RGB image."""
     height, width = pixels.shape[:2]
-    return Image.frombytes("RGB", (width, height), pixels.tobytes(), "raw", "RGBX")
+    image = Image.new("RGB", (width, height), None)  # without a color, because all pixels follow
+    image.frombytes(np.ascontiguousarray(pixels), "raw", "RGBX")
+    return image
 
 
 def from_image(image: Image.Image) -> Pixels:
