@@ -351,6 +351,28 @@ class Clearance:
         """(K, 2) shortest path over cells with a distance of at least `room` [m]; (0, 2) without a path."""
 
 # sensors (core/sensors/)
+class LidarErrors(_Options):
+    def __init__(
+        self,
+        *,
+        std_per_meter: float,
+        bias_std: float,
+        scale_std: float,
+        resolution: float,
+        resolution_growth: float,
+        dropout: float,
+        short_share: float,
+        short_rate: float,
+        random_share: float,
+        range_dark: float,
+        fade: float,
+        incidence_max: float,
+        blind: Sequence[Sequence[float]],
+        divergence: float,
+        rays: int,
+        mixed: str,
+    ) -> None: ...
+
 class Lidar2dOptions(_Options):
     def __init__(
         self,
@@ -365,6 +387,7 @@ class Lidar2dOptions(_Options):
         angle_std: float,
         offset: Sequence[float],
         has_velocity: bool,
+        realism: LidarErrors | None,
     ) -> None: ...
 
 class FmcwLidar2dOptions(_Options):
@@ -382,6 +405,7 @@ class FmcwLidar2dOptions(_Options):
         offset: Sequence[float],
         motion_compensate: bool,
         velocity_noise_std: float,
+        realism: LidarErrors | None,
     ) -> None: ...
 
 # shapes (core/shapes/): body frame
@@ -541,6 +565,8 @@ class ObjectSpec:
         start_step: Number of steps for which the object stands still at its start.
         appear_step: Number of steps for which the object is not in the world.
         vanish_step: Step in which it leaves the world; 0: never.
+        reflectivity: Share of the light of lidars that its surface throws back.
+        material: What its surface does with the light of lidars with errors: "matt", "glass" or "mirror".
     """
 
     def __init__(
@@ -582,6 +608,8 @@ class ObjectSpec:
         start_step: int,
         appear_step: int,
         vanish_step: int,
+        reflectivity: float,
+        material: str,
     ) -> None: ...
 
 class RandomPlacement:

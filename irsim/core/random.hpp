@@ -73,15 +73,17 @@ inline Block philox(Key key, Block counter) {
   return counter;
 }
 
-/// The draws of one object in one stream. Each kind of draw is numbered separately; draw d is in block d / 4.
+/// The draws of one object in one stream. Each kind of draw is numbered separately; draw d is in block d / 4. Kinds
+/// that came later have a lane of their own, so that the numbers of the others stay what they are.
 struct Draws {
   Key key;
-  std::uint64_t stream, object;
+  std::uint64_t stream, object, lane;
 
-  Draws(Key k, std::uint64_t s, int i) : key(k), stream(s), object(static_cast<std::uint64_t>(i)) {}
+  Draws(Key k, std::uint64_t s, int i, std::uint64_t l = 0)
+      : key(k), stream(s), object(static_cast<std::uint64_t>(i)), lane(l) {}
   Draws(Key k, Stream s, int i) : Draws(k, static_cast<std::uint64_t>(s), i) {}
 
-  Block block(std::uint64_t index) const { return philox(key, {index, object, stream, 0}); }
+  Block block(std::uint64_t index) const { return philox(key, {index, object, stream, lane}); }
 
   /// Uniform in [0, 1).
   double uniform(std::uint64_t draw) const { return fraction(block(draw / 4)[draw % 4]); }

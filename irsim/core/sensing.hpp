@@ -23,9 +23,12 @@ struct Sensing {
   std::uint8_t* valid;            // (mount.count,) 1: a hit within [range_min, range_max]
   double* velocities;             // (velocity_rows, mount.count) [m/s]
   const Vec2* object_velocities;  // (N,) world frame [m/s]; null when no sensor of the world has velocity rows
-  BeamBuffers& buffers;
+  BeamBuffers &buffers, &spare;
 
-  Draws draws() const { return Draws(state.key(w), sensor_stream(mount.index), world.number[mount.object]); }
+  /// The draws of the sensor: lane 0 is the noise of ranges, directions and velocities, lane 1 what realism adds.
+  Draws draws(std::uint64_t lane = 0) const {
+    return Draws(state.key(w), sensor_stream(mount.index), world.number[mount.object], lane);
+  }
   /// Factor on the standard deviations of the sensors of the carrier.
   double noise() const { return state.noise_scale[w * world.objects + mount.object]; }
   std::uint64_t scan_number() const { return static_cast<std::uint64_t>(state.count[w]); }

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from irsim.bundled import templates
+from irsim.components.sensors._devices import DEVICES
+from irsim.components.sensors._realism import LidarRealism
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key, key_list, key_table, plain_table
 from irsim.lookup.guides import GUIDES
@@ -115,8 +117,31 @@ def _sensors(source: _Source) -> str:
     return (
         "`sensors: [{name: …}, …]`, a list. Lidars see all robots and obstacles that are not `unobstructed`.\n\n"
         + _components(source, "sensor")
-        + f"\n\n{COLOR}"
+        + f"\n\n## Errors of lidars: `realism`\n\n{' '.join((LidarRealism.__doc__ or '').split())}\n\n"
+        + _keys(source, "robot.sensors.lidar2d.realism")
+        + f"\n\n## Lidars that one can buy: `device`\n\n{_devices()}\n\n{COLOR}"
     )
+
+
+def _devices() -> str:
+    sources = list(dict.fromkeys(source for card in DEVICES.values() for source in card.sources.values()))
+    unread = sum(source.read is None for source in sources)
+    number = {source: index for index, source in enumerate(sources, 1)}
+    rows = [
+        [f"`{name}`", card.title, ", ".join(f"`{key}: {value}` [{number[card.sources[key]]}]".replace("True", "true")
+         .replace("False", "false") for key, value in card.keys.items())]
+        for name, card in DEVICES.items()
+    ]  # fmt: skip
+    told = "\n".join(
+        f"{number[source]}. {source.text}" + (f" (read {source.read})" if source.read else " (**unverified**)")
+        for source in sources
+    )
+    what = (
+        f"Keys beside `device` win. Each number has a source, by its index below; {unread} of {len(sources)} sources "
+        "were not opened yet, and their numbers are unverified. A tolerance of a maker is taken for two standard "
+        "deviations."
+    )
+    return f"{what}\n\n{plain_table(('device', 'maker and type', 'keys'), rows)}\n\n{told}"
 
 
 def _distributions(source: _Source) -> str:

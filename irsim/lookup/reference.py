@@ -14,8 +14,8 @@ from pathlib import Path
 import irsim.compat
 from irsim.common import data_files as resources
 from irsim.common.files import write_atomically
+from irsim.compat.absent import ABSENT
 from irsim.compat.differences import (
-    ABSENT,
     CHANGED_SCENES,
     DIFFERENCES,
     EXTENSIONS,

@@ -153,6 +153,8 @@ def build_object(
         start_step=steps_until(max(record.start_time, record.appear_time), step_time),
         appear_step=steps_until(record.appear_time, step_time),
         vanish_step=0 if record.vanish_time is None else 1 + steps_within(record.vanish_time, step_time),
+        reflectivity=record.reflectivity,
+        material=record.material,
     )
 
 

@@ -6,7 +6,7 @@ import pytest
 
 import irsim
 from irsim.compat import DIFFERENCES, KEY_DIFFERENCES, NAME_DIFFERENCES, missing_names, reference_names
-from irsim.compat.differences import ABSENT
+from irsim.compat.absent import ABSENT
 from irsim.lookup import lookup
 from tests.compat.scripts import SCRIPTS
 from tests.parity import test_parity as of_traces

@@ -56,7 +56,7 @@ def test_no_old_path_has_a_file() -> None:
 
 
 def test_every_module_of_the_reference_is_found_or_known_to_be_absent() -> None:
-    from irsim.compat.differences import ABSENT
+    from irsim.compat.absent import ABSENT
 
     modules = {place.partition(":")[0] for place in reference_names()}
     missing = [name for name in sorted(modules - ABSENT.keys()) if importlib.util.find_spec(name) is None]

@@ -68,6 +68,7 @@ SCAN: dict[str, Any] = {
     "noise": False,
     "std": 0.2,
     "offset": [0.0, 0.0, 0.0],
+    "realism": None,
 }
 
 
@@ -120,6 +121,8 @@ def robot(**overrides: Any) -> core.ObjectSpec:
         "start_step": 0,
         "appear_step": 0,
         "vanish_step": 0,
+        "reflectivity": 0.8,
+        "material": "matt",
         "target_roles": 0,
         "behavior": DASH,
         "grouped": False,

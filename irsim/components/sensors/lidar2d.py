@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 import irsim._core as core
 from irsim.components.options import SensorOptions
+from irsim.components.sensors._devices import DEVICES, DeviceName
+from irsim.components.sensors._realism import LidarRealism
 from irsim.options.base import Options
 from irsim.options.colors import Color
 from irsim.options.registry import SENSORS
@@ -59,6 +62,8 @@ class Lidar2d(SensorOptions):
     }
 
     name: Literal["lidar2d"] = "lidar2d"
+    device: DeviceName | None = None
+    """A lidar that one can buy: beams, ranges, noise and `realism` of its card; keys beside it win."""
     range_min: Annotated[Meters, Field(ge=0)] = 0.0
     """Shortest range; a nearer hit reads this value and is not valid."""
     range_max: Annotated[Meters, Field(gt=0)] = 10.0
@@ -83,12 +88,26 @@ class Lidar2d(SensorOptions):
     """Mounting pose in the body frame: [x, y, theta]."""
     has_velocity: Bool = False
     """Also record the velocity, world frame, of the object that each beam hits."""
+    realism: LidarRealism | None = None
+    """How ranges err beyond Gaussian noise; null is not at all."""
     plot: BeamPlot = BeamPlot()
     """Drawing options; they take precedence over `alpha` and `color`."""
     alpha: Fraction = 0.3
     """Opacity of the drawn beams."""
     color: Color = "#CC3311"
     """Colour of the drawn beams."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _take_device(cls, given: Any) -> Any:
+        name = given.get("device") if isinstance(given, Mapping) else None
+        if not isinstance(name, str) or name not in DEVICES:
+            return given
+        card = DEVICES[name].options()
+        realism = given.get("realism", {})
+        if isinstance(realism, Mapping):
+            realism = {**card["realism"], **realism}
+        return {**card, **given, "realism": realism}
 
     @property
     def drawn_alpha(self) -> float:

@@ -8,6 +8,7 @@
 namespace irsim {
 
 void bind_features(nb::module_& m) {
+  bind_fields<LidarErrors>(m, "LidarErrors");
 #define IRSIM_BIND(Type) bind_fields<Type>(m, #Type);
   IRSIM_KINEMATICS(IRSIM_BIND)
   IRSIM_BEHAVIORS(IRSIM_BIND)

@@ -22,7 +22,8 @@ void scan(const World& world, State& state, int w, const Scan& sensor, const Pos
                         state.valid.data + at,
                         state.velocities.data + velocities,
                         work.velocities.data(),
-                        work.beams};
+                        work.beams,
+                        work.blockers};
   with(sensor.sensor, [&](const auto& options) { run(options, sensing); });
 }
 

@@ -23,14 +23,20 @@ inline void aim_all(Fan& fan, const Mount& mount, Vec2 heading) {
   for (int i = 0; i < mount.count; ++i) fan.aim(i, rotate({mount.cosine[i], mount.sine[i]}, heading));
 }
 
-/// Cast at all objects that are not unobstructed, except `carrier`.
-inline void cast_at_visible(Fan& fan, const World& world, const State& state, int w, int carrier) {
+/// Cast at all objects that are not unobstructed and for which `seen(object)` holds.
+template <class Seen>
+void cast_at(Fan& fan, const World& world, const State& state, int w, Seen&& seen) {
   for (const int object : world.visible) {
-    if (object == carrier) continue;
+    if (!seen(object)) continue;
     const auto [centre, radius] = state.bounds(world, w, object);
     fan.consider(object, centre, radius);
   }
   fan.cast([&](int object) { return state.footprint(world, w, object); });
+}
+
+/// Cast at all objects that are not unobstructed, except `carrier`.
+inline void cast_at_visible(Fan& fan, const World& world, const State& state, int w, int carrier) {
+  cast_at(fan, world, state, w, [carrier](int object) { return object != carrier; });
 }
 
 /// Take a scan of a sensor that has the options `offset`, `range_max`, `noise` and `angle_std`. With noise, beam i

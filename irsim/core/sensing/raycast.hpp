@@ -35,6 +35,12 @@ class Fan {
   double range(int i) const { return buffers_.range[i]; }
   const std::int32_t* hits() const { return buffers_.hit.data(); }
   const double* ranges() const { return buffers_.range.data(); }
+  int count() const { return count_; }
+  Vec2 origin() const { return origin_; }
+  Vec2 heading() const { return heading_; }
+  double reach() const { return reach_; }
+  /// World-frame point in which beam i ends.
+  Vec2 end(int i) const { return origin_ + beam(i) * buffers_.range[i]; }
   /// World-frame unit direction of beam i.
   Vec2 beam(int i) const { return {buffers_.dx[i], buffers_.dy[i]}; }
 

@@ -1,8 +1,11 @@
 // Frequency-modulated lidar: range and, by the Doppler shift, radial velocity of each hit.
 #pragma once
 
+#include <optional>
+
 #include "fields.hpp"
 #include "sensing/beams.hpp"
+#include "sensing/lidar_errors.hpp"
 
 namespace irsim {
 
@@ -17,6 +20,7 @@ struct FmcwLidar2dOptions {
   std::array<double, 3> offset;  // sensor pose in the body frame [m, m, rad]
   bool motion_compensate;        // whether the motion of the carrier is subtracted
   double velocity_noise_std;     // standard deviation of radial velocities, also without `noise` [m/s]
+  std::optional<LidarErrors> realism;
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
     using F = FmcwLidar2dOptions;
@@ -24,7 +28,7 @@ struct FmcwLidar2dOptions {
                  field("angle_range", &F::angle_range), field("number", &F::number), field("endpoint", &F::endpoint),
                  field("noise", &F::noise), field("std", &F::std), field("angle_std", &F::angle_std),
                  field("offset", &F::offset), field("motion_compensate", &F::motion_compensate),
-                 field("velocity_noise_std", &F::velocity_noise_std));
+                 field("velocity_noise_std", &F::velocity_noise_std), field("realism", &F::realism));
   }
 };
 
@@ -44,16 +48,22 @@ inline void fmcw_lidar2d(const FmcwLidar2dOptions& options, const Sensing& s) {
   const bool noisy = options.noise && options.std > 0.0, shaky = options.velocity_noise_std > 0.0;
   NormalDraws range_error(s.draws()), velocity_error(s.draws());
   const Vec2 own = options.motion_compensate ? Vec2{} : s.object_velocities[s.mount.object];
+  if (options.realism) {
+    const double std = noisy ? options.std : 0.0;
+    write_with_errors(*options.realism, {options.range_min, options.range_max, std}, s, fan, first_draw);
+  }
   for (int i = 0; i < n; ++i) {
-    const int hit = fan.hit(i);
-    double range = hit < 0 ? options.range_max : fan.range(i);
-    if (hit >= 0 && noisy) range += s.noise() * options.std * range_error(first_draw + i);
-    const bool valid = hit >= 0 && range >= options.range_min && range <= options.range_max;
-    s.ranges[i] = clip(range, options.range_min, options.range_max);
-    s.hits[i] = hit;
-    s.valid[i] = valid;
+    if (!options.realism) {
+      const int hit = fan.hit(i);
+      double range = hit < 0 ? options.range_max : fan.range(i);
+      if (hit >= 0 && noisy) range += s.noise() * options.std * range_error(first_draw + i);
+      s.ranges[i] = clip(range, options.range_min, options.range_max);
+      s.hits[i] = hit;
+      s.valid[i] = hit >= 0 && range >= options.range_min && range <= options.range_max;
+    }
+    const int hit = s.hits[i];
     double receding = 0.0;
-    if (valid) {
+    if (s.valid[i] && hit >= 0) {
       receding = dot(s.object_velocities[hit] - own, fan.beam(i));
       if (shaky) receding += s.noise() * options.velocity_noise_std * velocity_error(first_draw + 2 * n + i);
     }

@@ -1,8 +1,11 @@
 // Planar lidar: exact ranges to the boundaries of all objects that are not unobstructed.
 #pragma once
 
+#include <optional>
+
 #include "fields.hpp"
 #include "sensing/beams.hpp"
+#include "sensing/lidar_errors.hpp"
 
 namespace irsim {
 
@@ -16,13 +19,14 @@ struct Lidar2dOptions {
   double angle_std;              // standard deviation of beam directions [rad]
   std::array<double, 3> offset;  // sensor pose in the body frame [m, m, rad]
   bool has_velocity;             // whether the world-frame velocity of the object hit by each beam is recorded
+  std::optional<LidarErrors> realism;
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
     using L = Lidar2dOptions;
     return visit(field("range_min", &L::range_min), field("range_max", &L::range_max),
                  field("angle_range", &L::angle_range), field("number", &L::number), field("endpoint", &L::endpoint),
                  field("noise", &L::noise), field("std", &L::std), field("angle_std", &L::angle_std),
-                 field("offset", &L::offset), field("has_velocity", &L::has_velocity));
+                 field("offset", &L::offset), field("has_velocity", &L::has_velocity), field("realism", &L::realism));
   }
 };
 
@@ -32,11 +36,26 @@ inline std::vector<double> beams(const Lidar2dOptions& options) {
 
 inline int velocity_rows(const Lidar2dOptions& options) { return options.has_velocity ? 2 : 0; }
 
+/// World-frame velocities of the objects that were hit, if they are recorded.
+inline void write_velocities(const Lidar2dOptions& options, const Sensing& s) {
+  const int n = s.mount.count;
+  if (!options.has_velocity) return;
+  for (int i = 0; i < n; ++i) {
+    const Vec2 v = s.hits[i] < 0 ? Vec2{} : s.object_velocities[s.hits[i]];
+    s.velocities[i] = v.x, s.velocities[n + i] = v.y;
+  }
+}
+
 inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
   const int n = s.mount.count;
   const std::uint64_t first_draw = 2 * s.scan_number() * static_cast<std::uint64_t>(n);  // n ranges, n directions
   const Fan fan = cast_beams(options, s, first_draw + n);
   const bool noisy = options.noise && options.std > 0.0;
+  if (options.realism) {
+    const double std = noisy ? options.std : 0.0;
+    write_with_errors(*options.realism, {options.range_min, options.range_max, std}, s, fan, first_draw);
+    return write_velocities(options, s);
+  }
   NormalDraws normal(s.draws());
   // Copies, because for all that the compiler knows, writing a byte of `valid` could change what these point to.
   const double nearest = options.range_min, farthest = options.range_max, *measured = fan.ranges();
@@ -51,11 +70,7 @@ inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
     ranges[i] = clip(range, nearest, farthest);
     valid[i] = hit && range >= nearest && range <= farthest;
   }
-  if (!options.has_velocity) return;
-  for (int i = 0; i < n; ++i) {
-    const Vec2 v = s.hits[i] < 0 ? Vec2{} : s.object_velocities[s.hits[i]];
-    s.velocities[i] = v.x, s.velocities[n + i] = v.y;
-  }
+  write_velocities(options, s);
 }
 
 }  // namespace irsim

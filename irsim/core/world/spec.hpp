@@ -45,6 +45,8 @@ struct ObjectSpec {
   std::int64_t start_step;                           // steps for which the object stands still at its start
   std::int64_t appear_step;                          // steps for which it is not in the world at all
   std::int64_t vanish_step;                          // step in which it leaves the world; 0: never
+  double reflectivity;                               // share of the light of a lidar that its surface throws back
+  Material material;
 
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
@@ -61,7 +63,8 @@ struct ObjectSpec {
         field("sensors", &S::sensors), field("centroid", &S::centroid), field("mass", &S::mass),
         field("friction", &S::friction), field("inertia", &S::inertia), field("restitution", &S::restitution),
         field("tau", &S::tau), field("driven", &S::driven), field("start_step", &S::start_step),
-        field("appear_step", &S::appear_step), field("vanish_step", &S::vanish_step));
+        field("appear_step", &S::appear_step), field("vanish_step", &S::vanish_step),
+        field("reflectivity", &S::reflectivity), choice("material", &S::material, "matt", "glass", "mirror"));
   }
 };
 

@@ -29,6 +29,8 @@ struct BeamBuffers {
   };
   std::vector<double> dx, dy, range;
   std::vector<std::int32_t> hit;
+  std::vector<double> cosine, power;  // of the incidence, and share of its light that returns; for lidars with errors
+  std::vector<double> cone;           // ranges of the rays of the cones of all beams [m]
   std::vector<Body> bodies, sorted;
 };
 

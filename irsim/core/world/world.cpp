@@ -213,6 +213,9 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     (s.is_static ? fixed_objects : moving).push_back(i);
     if (s.role == 0) robots.push_back(i);
     if (!s.unobstructed) visible.push_back(i);
+    reflectivity.push_back(s.reflectivity);
+    material.push_back(s.material);
+    optics = optics || s.material != Material::matt;
     if (s.route && !s.is_static) routed.push_back(i);
     if (s.appear_step > 0) latecomers.push_back(i);
     if (s.vanish_step > 0) leavers.push_back(i);

@@ -58,6 +58,10 @@ struct BodyDynamics {
   bool pushable;       // whether it is not static, has a finite mass, and is not an obstacle that replays a recording
 };
 
+/// What the surface of an object does with the light of a lidar: throw it in all directions, let it pass unless it
+/// comes from ahead, or throw it in one direction.
+enum class Material : std::uint8_t { matt, glass, mirror };
+
 /// Which contacts are collisions: those at the ends of steps, or those within steps, too.
 enum Contacts { kStepEnd = 0, kSwept = 1 };
 
@@ -90,6 +94,9 @@ struct World {
   std::vector<Vec3> vel_min, vel_max, acce;
   std::vector<double> angle_low, angle_high, goal_threshold;
   std::vector<Pose> range_low, range_high;
+  std::vector<double> reflectivity;
+  std::vector<Material> material;
+  bool optics = false;                     // whether a material is not matt
   std::vector<std::array<bool, 3>> paced;  // whether a control is a speed that perturbation or variation changes
   std::vector<ObjectSpec> specs;           // as given: initial values, shapes, sensors
 

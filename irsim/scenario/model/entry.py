@@ -168,6 +168,12 @@ class Entry(Options):
     """Name of the group; null is `<role>_<group>`."""
     unobstructed: Annotated[Bool, OrNull(False)] = False
     """Other objects do not collide with this one and lidars do not see it; it still collides with others."""
+    reflectivity: Fraction | None = None
+    """Share of the light of a lidar that the surface throws back, for lidars with `realism`; null is 0.8."""
+    material: Literal["matt", "glass", "mirror"] = "matt"
+    """What the surface does with the light of lidars with `realism`: `glass` returns beams that meet it within 10
+    degrees of straight ahead and lets others pass, a `mirror` shows what it reflects, `matt` throws light in all
+    directions."""
     fov: SpanAngle | None = None
     """Opening angle of the field of view; null is the lidar's. If it is given, events say when the object sees
     others: robots, objects that can move, and obstacles with `tags`."""

@@ -247,6 +247,8 @@ class _Maker:
             start_time=value["start_time"],
             appear_time=value["appear_time"],
             vanish_time=vanish_time,
+            reflectivity=DEFAULT_REFLECTIVITY if entry.reflectivity is None else entry.reflectivity,
+            material=entry.material,
         )
 
     def _follow_recording(self, value: dict[str, Any]) -> float | None:
@@ -298,6 +300,8 @@ class _Maker:
         return ROBOT_COLOR
 
 
+DEFAULT_REFLECTIVITY = 0.8
+"""Share of the light of lidars that a surface throws back: of light plaster and paint."""
 SPREAD_KEYS = (
     "name", "tags", "state", "goal", "waypoints", "start_time", "appear_time", "velocity", "kinematics", "shape",
     "behavior", "group_behavior", "sensors", "plot", "color", "description", "vel_min", "vel_max", "acce",

@@ -61,7 +61,14 @@ def kernels_of(record: ObjectRecord, group_behavior: BehaviorOptions | None, zon
         drive = kernel_options(KINEMATICS, record.kinematics, **{**limits, "wheelbase": record.wheelbase or 1.0})
         if options is not None and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None:
             behavior = kernel_options(BEHAVIORS, options)
-    return Kernels(parts, drive, behavior, route, [kernel_options(SENSORS, sensor) for sensor in record.sensors])
+    return Kernels(parts, drive, behavior, route, [_sensor(options) for options in record.sensors])
+
+
+def _sensor(options: Any) -> Any:
+    """The options of a sensor; None for one computed in Python."""
+    realism = getattr(options, "realism", None)
+    errors = None if realism is None else realism.kernel(options.range_max)
+    return kernel_options(SENSORS, options, realism=errors)
 
 
 def parts_of(shape: Any) -> list[Any]:

@@ -107,6 +107,8 @@ class ObjectRecord:
     start_time: float = 0.0  # until then it stands still [s]
     appear_time: float = 0.0  # until then it is not in the world [s]
     vanish_time: float | None = None  # last time at which it is in the world [s]; None: it stays
+    reflectivity: float = 0.8  # share of the light of lidars that its surface throws back
+    material: Literal["matt", "glass", "mirror"] = "matt"
     spreads: Spreads | None = None  # None: it starts as written
 
     @property

@@ -1,0 +1,186 @@
+#include "sensing/lidar_errors.hpp"
+
+#include "sensing/beams.hpp"
+#include "sensing/surface.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kPulse = 0.05;           // ranges within a cone that differ by less are one echo [m]
+constexpr double kGlassIncidence = 0.17;  // largest incidence at which glass returns light [rad]
+constexpr std::uint64_t kEpisodeDraws = std::uint64_t{1} << 62;  // first of the draws that hold for an episode
+
+bool is_matt(const World& world, int object) { return world.material[object] == Material::matt; }
+
+bool is_blind(const LidarErrors& errors, double angle) {
+  return std::any_of(errors.blind.begin(), errors.blind.end(), [&](const std::vector<double>& sector) {
+    return sector.size() == 2 && angle >= sector[0] && angle <= sector[1];
+  });
+}
+
+/// Let light pass through glass that it does not meet from ahead: what is behind is seen instead.
+void pass_glass(const Sensing& s, const Fan& fan, Surface& surface) {
+  BeamBuffers& beams = s.buffers;
+  const auto passes = [&](int i) {
+    const int hit = beams.hit[i];
+    return hit >= 0 && s.world.material[hit] == Material::glass && beams.cosine[i] < std::cos(kGlassIncidence);
+  };
+  const int n = s.mount.count;
+  int first = 0;
+  while (first < n && !passes(first)) ++first;
+  if (first == n) return;
+  Fan behind(s.spare, fan.origin(), fan.heading(), s.mount, fan.reach());
+  for (int i = 0; i < n; ++i) behind.aim(i, fan.beam(i));
+  cast_at(behind, s.world, s.state, s.w,
+          [&](int object) { return object != s.mount.object && s.world.material[object] != Material::glass; });
+  for (int i = first; i < n; ++i) {
+    if (!passes(i)) continue;
+    beams.range[i] = behind.range(i), beams.hit[i] = behind.hit(i);
+    if (behind.hit(i) >= 0) beams.cosine[i] = surface.cosine(fan, i);
+  }
+}
+
+/// Follow light from mirrors to the next surface: the beam reads the length of the whole way.
+void follow_mirrors(const Sensing& s, const Fan& fan, Surface& surface) {
+  BeamBuffers& beams = s.buffers;
+  const Mount one{s.mount.object, 0, 0, 1, 0, 0, {}, {0.0}, {1.0}, {0.0}};
+  for (int i = 0; i < s.mount.count; ++i) {
+    const int hit = beams.hit[i];
+    if (hit < 0 || s.world.material[hit] != Material::mirror) continue;
+    const Vec2 normal = surface.normal(fan, i), beam = fan.beam(i), at = fan.end(i);
+    const Vec2 on = beam - normal * (2.0 * dot(beam, normal));
+    Fan next(s.spare, at, on, one, fan.reach() - beams.range[i]);
+    next.aim(0, on);
+    cast_at(next, s.world, s.state, s.w, [&](int object) { return object != hit; });
+    beams.hit[i] = next.hit(0), beams.range[i] += next.range(0);
+    if (next.hit(0) >= 0) beams.cosine[i] = std::fabs(dot(surface.normal(next, 0), on));
+  }
+}
+
+/// Replace each range by what the rays of the beam's cone return together.
+void widen_beams(const LidarErrors& errors, const Sensing& s, const Fan& fan) {
+  BeamBuffers& beams = s.buffers;
+  const int n = s.mount.count, rays = errors.rays;
+  beams.cone.resize(static_cast<std::size_t>(n) * rays);
+  for (int k = 0; k < rays; ++k) {
+    double* const ranges = &beams.cone[static_cast<std::size_t>(k) * n];
+    const double aside = ((k + 0.5) / rays - 0.5) * errors.divergence;
+    if (aside == 0.0) {
+      for (int i = 0; i < n; ++i) ranges[i] = fan.hit(i) < 0 ? kInfinity : fan.range(i);
+      continue;
+    }
+    const Vec2 turn = unit(aside);
+    Fan ray(s.spare, fan.origin(), rotate(fan.heading(), turn), s.mount, fan.reach());
+    for (int i = 0; i < n; ++i) ray.aim(i, rotate(fan.beam(i), turn));
+    cast_at(ray, s.world, s.state, s.w, [&](int object) { return object != s.mount.object; });
+    for (int i = 0; i < n; ++i) {
+      ranges[i] = ray.hit(i) < 0 ? kInfinity : ray.range(i);
+      if (beams.hit[i] < 0 && ray.hit(i) >= 0) beams.hit[i] = ray.hit(i);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    if (beams.hit[i] < 0 || !is_matt(s.world, beams.hit[i])) continue;
+    double nearest = kInfinity, farthest = 0.0, sum = 0.0, weights = 0.0;
+    int returned = 0;
+    for (int k = 0; k < rays; ++k) {
+      const double range = beams.cone[static_cast<std::size_t>(k) * n + i];
+      if (range == kInfinity) continue;
+      const double weight = 1.0 / std::max(range * range, 1e-12);  // the light that comes back from there
+      nearest = std::min(nearest, range), farthest = std::max(farthest, range);
+      sum += weight * range, weights += weight;
+      ++returned;
+    }
+    beams.power[i] = static_cast<double>(returned) / rays;
+    const bool one_echo = errors.mixed == Mixed::mean || farthest - nearest <= kPulse;
+    beams.range[i] = one_echo ? sum / weights : errors.mixed == Mixed::nearest ? nearest : farthest;
+  }
+}
+
+/// The range at which half of the beams are returned by a surface that throws back a share of their light [m].
+double detection_range(const LidarErrors& errors, const RangeLimits& limits, double share) {
+  constexpr double kDark = 0.1, kWhite = 0.9;
+  const double growth = std::log(limits.farthest / errors.range_dark) / std::log(kWhite / kDark);
+  return errors.range_dark * std::pow(share / kDark, growth);
+}
+
+/// Whether a surface returns a beam.
+bool is_detected(const LidarErrors& errors, const RangeLimits& limits, double range, double share, double draw) {
+  if (!(errors.range_dark < limits.farthest)) return true;
+  const double ahead = detection_range(errors, limits, share) - range;
+  if (!(errors.fade > 0.0)) return ahead >= 0.0;
+  return draw < 1.0 / (1.0 + std::exp(-ahead / errors.fade));
+}
+
+/// A range that something unseen returns instead of the surface: exponential, and shorter than the way there [m].
+double cut_short(double rate, double range, double draw) {
+  return rate > 0.0 ? -std::log(1.0 - draw * (1.0 - std::exp(-rate * range))) / rate : draw * range;
+}
+
+double rounded(const LidarErrors& errors, double range) {
+  const double step = errors.resolution + errors.resolution_growth * range * range;
+  return step > 0.0 ? step * std::floor(range / step + 0.5) : range;
+}
+
+}  // namespace
+
+void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, const Sensing& s, const Fan& fan,
+                       std::uint64_t first_draw) {
+  const int n = s.mount.count;
+  BeamBuffers& beams = s.buffers;
+  const bool steep = errors.incidence_max < 0.5 * kPi, dim = errors.range_dark < limits.farthest;
+  const bool looks = steep || dim || s.world.optics;
+  beams.power.assign(n, 1.0);
+  if (looks) {
+    beams.cosine.assign(n, 1.0);
+    Surface surface(s.world, s.state, s.w);
+    for (int i = 0; i < n; ++i) {
+      if (fan.hit(i) >= 0) beams.cosine[i] = surface.cosine(fan, i);
+    }
+    if (s.world.optics) {
+      pass_glass(s, fan, surface);
+      follow_mirrors(s, fan, surface);
+    }
+  }
+  if (errors.divergence > 0.0 && errors.rays > 1) widen_beams(errors, s, fan);
+
+  const Draws added = s.draws(1);
+  NormalDraws normal(s.draws());
+  const double scale = 1.0 + errors.scale_std * added.normal(kEpisodeDraws);
+  const double bias = errors.bias_std * added.normal(kEpisodeDraws + 1);
+  const double least_cosine = steep ? std::cos(errors.incidence_max) : 0.0;
+  const double shorts = errors.dropout + errors.short_share, randoms = shorts + errors.random_share;
+  const bool draws = dim || randoms > 0.0;
+  const std::uint64_t first_block = s.scan_number() * static_cast<std::uint64_t>(n);
+  for (int i = 0; i < n; ++i) {
+    int hit = beams.hit[i];
+    bool returned = hit >= 0 && !(steep && beams.cosine[i] < least_cosine);
+    double range = limits.farthest;
+    if (returned) {
+      const double exact = beams.range[i], grown = errors.std_per_meter * exact;
+      const double sigma = std::sqrt(limits.std * limits.std + grown * grown);
+      range = std::max(0.0, scale * exact + bias);
+      if (sigma > 0.0) range = std::max(0.0, range + s.noise() * sigma * normal(first_draw + i));
+    }
+    if (draws) {
+      const std::array<double, 4> draw = added.uniforms(first_block + i);
+      if (returned && dim) {
+        const double share = s.world.reflectivity[hit] * beams.cosine[i] * beams.power[i];
+        returned = is_detected(errors, limits, beams.range[i], share, draw[2]);
+      }
+      if (draw[0] < errors.dropout) {
+        returned = false;
+      } else if (draw[0] < shorts) {
+        if (returned) range = cut_short(errors.short_rate, range, draw[1]), hit = -1;
+      } else if (draw[0] < randoms) {
+        range = limits.nearest + draw[1] * (limits.farthest - limits.nearest), hit = -1, returned = true;
+      }
+    }
+    returned = returned && !is_blind(errors, s.mount.angle[i]);
+    if (returned) range = rounded(errors, range);
+    s.valid[i] = returned && range >= limits.nearest && range <= limits.farthest;
+    s.ranges[i] = returned ? clip(range, limits.nearest, limits.farthest) : limits.farthest;
+    s.hits[i] = returned ? hit : -1;
+  }
+}
+
+}  // namespace irsim

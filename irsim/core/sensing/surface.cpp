@@ -1,0 +1,69 @@
+#include "sensing/surface.hpp"
+
+#include "maps/occupancy.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kOnEdge = 1e-9;  // offset of a hit from the edge that it is on, relative to the coordinates
+constexpr double kStair = 4.0;    // cells between the hits of neighboring beams that are taken for one wall
+
+Vec2 normal_to(Vec2 along) {
+  const double length = norm(along);
+  return length > 0.0 ? Vec2{along.y, -along.x} * (1.0 / length) : Vec2{1.0, 0.0};
+}
+
+double distance_to(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 along = b - a;
+  const double length2 = squared(along), t = length2 > 0.0 ? clip(dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
+  return norm(p - (a + along * t));
+}
+
+}  // namespace
+
+Vec2 Surface::normal(const Fan& fan, int i) {
+  const int object = fan.hit(i);
+  const Vec2 at = fan.end(i);
+  const Footprint body = state_.footprint(world_, w_, object);
+  if (object == object_ && part_ < body.count && body.parts[part_].kind != Kind::circle) {
+    const Vec2* edge = body.vertices + body.parts[part_].first + edge_;
+    if (distance_to(at, edge[0], edge[1]) <= kOnEdge * (1.0 + norm(at))) return normal_to(edge[1] - edge[0]);
+  }
+  object_ = object;
+  double least = kInfinity;
+  Vec2 out{1.0, 0.0};
+  for (int part = 0; part < body.count; ++part) {
+    const Part& p = body.parts[part];
+    const Vec2* vertices = body.vertices + p.first;
+    if (p.cells != nullptr) return object_ = -1, normal_of_cells(*p.cells, fan, i);
+    if (p.kind == Kind::circle) {
+      const Vec2 arm = at - *vertices;
+      const double length = norm(arm), away = std::fabs(length - p.radius);
+      if (away < least) least = away, part_ = part, out = length > 0.0 ? arm * (1.0 / length) : out;
+      continue;
+    }
+    for (int k = 0; k < p.last - p.first; ++k) {
+      const double away = distance_to(at, vertices[k], vertices[k + 1]);
+      if (away < least) least = away, part_ = part, edge_ = k, out = normal_to(vertices[k + 1] - vertices[k]);
+    }
+  }
+  return out;
+}
+
+Vec2 Surface::normal_of_cells(const OccupancyGrid& grid, const Fan& fan, int i) const {
+  const Vec2 at = fan.end(i), cell = grid.cell();
+  const double near = kStair * std::max(cell.x, cell.y);
+  const auto same_wall = [&](int k) {
+    return k >= 0 && k < fan.count() && fan.hit(k) == fan.hit(i) && norm(fan.end(k) - at) <= near;
+  };
+  const int low = same_wall(i - 1) ? i - 1 : i, high = same_wall(i + 1) ? i + 1 : i;
+  if (low != high) return normal_to(fan.end(high) - fan.end(low));
+  const auto off_line = [](double place, double origin, double size) {
+    const double cells = (place - origin) / size;
+    return std::fabs(cells - std::floor(cells + 0.5)) * size;
+  };
+  const bool upright = off_line(at.x, grid.origin().x, cell.x) < off_line(at.y, grid.origin().y, cell.y);
+  return upright ? Vec2{1.0, 0.0} : Vec2{0.0, 1.0};
+}
+
+}  // namespace irsim
