@@ -50,6 +50,21 @@ class TricycleOptions(_Options):
         steer_lag: float,
     ) -> None: ...
 
+class SkidSteerOptions(_Options):
+    def __init__(
+        self,
+        *,
+        noise: bool,
+        alpha: Sequence[float],
+        believed_track: float,
+        icr_left: float,
+        icr_right: float,
+        icr_ahead: float,
+        traction_left: float,
+        traction_right: float,
+        speed_max: float,
+    ) -> None: ...
+
 # behaviors (core/behaviors/)
 class AvocadoOptions(_Options):
     def __init__(

@@ -10,6 +10,9 @@ from irsim.simulation.scene import SceneObject
 
 __all__ = ["native_control"]
 
+_YAW_RATE = ("diff", "skid_steer")
+"""Drives whose controls are forward speed and yaw rate."""
+
 
 def native_control(
     agent: SceneObject, command: Sequence[float], *, steering_rate: bool, steer: float, period: float
@@ -30,7 +33,7 @@ def native_control(
         BridgeError: The drive comes from a plug-in.
     """
     forward, left, rate = (float(value) for value in command)
-    if agent.drive == "diff":
+    if agent.drive in _YAW_RATE:
         return [forward, rate]
     if agent.drive == "omni":
         return [forward, left]
@@ -46,4 +49,4 @@ def native_control(
         angle = steer if abs(speed) < 1e-6 else math.asin(across / speed)
         return [speed, (angle - steer) / period if steering_rate else angle]
     what = f"'{agent.name}' with the drive {agent.drive!r} cannot follow speeds and a yaw rate"
-    raise BridgeError("bridge-mismatch", what, "use a robot with diff, omni, omni_angular, acker or tricycle")
+    raise BridgeError("bridge-mismatch", what, "use a robot with a drive of irsim, such as diff")

@@ -132,6 +132,8 @@ class KinematicsOptions(Options):
     """Whether the second control steers wheels: the heading changes only while they roll, and the wheelbase matters."""
     pivots: ClassVar[bool] = False
     """Whether its steered wheel may stand at a quarter turn, so that it turns on the spot."""
+    slips: ClassVar[bool] = False
+    """Whether the body moves otherwise than its controls say, such as wheels that slip or that need time."""
     usual_vel_max: ClassVar[tuple[float, ...]] = ()
     usual_vel_min: ClassVar[tuple[float, ...]] = ()
     usual_acce: ClassVar[tuple[float, ...]] = ()

@@ -71,8 +71,9 @@ inline double speed_to_stop_within(double left, double acce, double dt) {
 
 /// The meaning of the components of a control.
 struct Rows {
-  int travel;  // number of leading components that are translation: forward, then lateral speed
-  int yaw;     // index of the component that is a yaw rate, -1 without one: contacts then change the speed only
+  int travel;     // number of leading components that are translation: forward, then lateral speed
+  int yaw;        // index of the component that is a yaw rate, -1 without one: contacts then change the speed only
+  int inner = 0;  // number of extra state rows that the drive uses
 };
 
 template <class Options>

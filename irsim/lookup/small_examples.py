@@ -57,6 +57,7 @@ _VALUES: dict[str, Any] = {
     "kinematics.diff.alpha": [0.03, 0, 0, 0.03],
     "kinematics.omni.alpha": [0.03, 0.03],
     "kinematics.omni_angular.alpha": [0.03, 0.03, 0.03],
+    "kinematics.skid_steer.alpha": [0.03, 0, 0, 0.03],
     "kinematics.tricycle.alpha": [0.03, 0, 0, 0.03],
     "kinematics.tricycle.psi_max": 1.2,
     "lookahead": 1.5,

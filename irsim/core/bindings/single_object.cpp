@@ -17,11 +17,13 @@ struct LoneObject {
   Numbers extra;
   Vec2 direction;
 
-  explicit LoneObject(const Numbers& state) {
+  LoneObject(const Drive& drive, const Numbers& state) {
     if (state.size() < 3) throw nb::value_error("a state must have at least three numbers");
     pose = {state[0], state[1], state[2]};
     extra.assign(state.begin() + 3, state.end());
-    extra.resize(std::max<std::size_t>(extra.size(), 1));
+    std::size_t inner = 1;
+    with(drive, [&](const auto& options) { inner = std::max<std::size_t>(inner, rows(options).inner); });
+    extra.resize(std::max(extra.size(), inner));
     direction = unit(pose.theta);
   }
 };
@@ -34,7 +36,7 @@ Vec3 control_of(const Numbers& values) {
 
 std::pair<Numbers, Numbers> drive_step(const Drive& drive, const Numbers& state, const Numbers& control, double dt,
                                        int integration) {
-  LoneObject object(state);
+  LoneObject object(drive, state);
   Vec3 twist;
   with(drive, [&](const auto& options) {
     run(options, Motion{object.pose, object.extra.data(), twist, object.direction, control_of(control), dt,
@@ -47,7 +49,7 @@ std::pair<Numbers, Numbers> drive_step(const Drive& drive, const Numbers& state,
 
 Numbers drive_follow(const Drive& drive, const Numbers& state, const Numbers& velocity, double min_speed,
                      double tolerance, double guarantee_time, double max_rate, double acce, double dt) {
-  const LoneObject object(state);
+  const LoneObject object(drive, state);
   if (velocity.size() != 2) throw nb::value_error("a velocity must have two numbers");
   const Turning turning{min_speed, tolerance, guarantee_time, max_rate, kInfinity, acce, dt};
   Vec3 control;

@@ -28,7 +28,7 @@ inline void acker(const AckerOptions& options, const Motion& m) {
   m.extra[0] = clip(psi, -options.psi_max, options.psi_max);
 }
 
-inline Rows rows(const AckerOptions&) { return {1, -1}; }
+inline Rows rows(const AckerOptions&) { return {1, -1, 1}; }
 
 inline Vec3 deviation(const AckerOptions& options, Vec3 control) { return velocity_deviation(options.alpha, control); }
 

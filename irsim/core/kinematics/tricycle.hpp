@@ -63,7 +63,7 @@ inline void tricycle(const TricycleOptions& options, const Motion& m) {
   set_mean_twist(m, before, turn);
 }
 
-inline Rows rows(const TricycleOptions&) { return {1, -1}; }
+inline Rows rows(const TricycleOptions&) { return {1, -1, 2}; }
 
 inline Vec3 deviation(const TricycleOptions& options, Vec3 control) {
   return velocity_deviation(options.alpha, control);

@@ -210,6 +210,7 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     range_low.push_back(pose_of(s.range_low));
     range_high.push_back(pose_of(s.range_high));
     extra_rows = std::max(extra_rows, static_cast<int>(s.extra.size()));
+    with(s.drive, [&](const auto& options) { extra_rows = std::max(extra_rows, rows(options).inner); });
     (s.is_static ? fixed_objects : moving).push_back(i);
     if (s.role == 0) robots.push_back(i);
     if (!s.unobstructed) visible.push_back(i);

@@ -355,6 +355,14 @@ def velocity_xy(view: SimObject) -> Floats:
     return column(view._simulation.state.velocity_world(view.row))
 
 
+def body_twist(view: SimObject) -> tuple[float, float, float]:
+    """Return forward and leftward speed [m/s] and yaw rate [rad/s] of an object whose drive slips, body frame."""
+    vx, vy = view._simulation.state.velocity_world(view.row)
+    heading = float(view._simulation.pose[view.row, 2])
+    c, s = math.cos(heading), math.sin(heading)
+    return c * vx + s * vy, c * vy - s * vx, float(view._simulation.twist[view.row, 2])
+
+
 def max_speed(view: SimObject) -> float:
     """Return the largest speed that the limits allow [m/s]; 0 for objects without a drive."""
     top = view._simulation.limits(view.row)[1]

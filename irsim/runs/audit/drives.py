@@ -84,12 +84,39 @@ def _tricycle(body: Body, exact: bool) -> Step:
     return step
 
 
+def _skid_steer(body: Body, exact: bool) -> Step:
+    options = body.options.kinematics or {}
+    believed, fastest = _number(options, "believed_track", 1.0), _number(options, "speed_max", math.inf)
+    left_at, right_at = _number(options, "icr_left", 0.5), _number(options, "icr_right", -0.5)
+    ahead = _number(options, "icr_ahead", 0.0)
+    grip = _number(options, "traction_left", 1.0), _number(options, "traction_right", 1.0)
+
+    def step(state: list[float], control: list[float], dt: float) -> None:
+        sides = [control[0] - 0.5 * believed * control[1], control[0] + 0.5 * believed * control[1]]
+        scale = max(1.0, *(abs(speed) / fastest for speed in sides))
+        left, right = (share * speed / scale for share, speed in zip(grip, sides, strict=True))
+        rate = (right - left) / (left_at - right_at)
+        forward = (right * left_at - left * right_at) / (left_at - right_at)
+        if exact:
+            return _arc(state, forward, -ahead * rate, rate, dt)
+        c, s = math.cos(state[2]), math.sin(state[2])
+        state[0] += (forward * c + ahead * rate * s) * dt
+        state[1] += (forward * s - ahead * rate * c) * dt
+        state[2] += rate * dt
+        return None
+
+    return step
+
+
 def _number(options: dict[str, Any], key: str, default: float) -> float:
     value = options.get(key)
     return float(value) if isinstance(value, (int, float)) and not math.isnan(value) else default
 
 
-INNER: dict[str, tuple[int, Callable[[Body, bool], Step]]] = {"tricycle": (2, _tricycle)}
+INNER: dict[str, tuple[int, Callable[[Body, bool], Step]]] = {
+    "tricycle": (2, _tricycle),
+    "skid_steer": (0, _skid_steer),
+}
 """Number of inner states and the motion of each drive."""
 
 

@@ -23,6 +23,7 @@ obstacle:
 DRIVES = {
     "tricycle": ("name: tricycle, wheelbase: 0.8", "wheelbase"),
     "lagged": ("name: tricycle, wheelbase: 0.8, steer_rate: 1.2, steer_acce: 6, steer_lag: 0.1", "steer_lag"),
+    "skid_steer": ("name: skid_steer, preset: jackal, traction_left: 0.9, icr_ahead: 0.1", "icr_ahead"),
     "by_rate": ("name: tricycle, wheelbase: 0.8, mode: angular, steer_rate: 0.7, steer_lag: 0.1", "steer_lag"),
 }
 """Options of each drive, and one on which its motion depends."""
