@@ -28,9 +28,11 @@ _NEAR_STAR = 2.0
 def touches(events: Sequence[Event], robots: set[str], passable: set[str]) -> tuple[list[Event], list[Event]]:
     """Contacts with a robot, and contacts between others; without bodies that may be passed through."""
     kinds = ("collision", "contact_between_steps", "passed_through")
-    solid = [event for event in events if event.kind in kinds and not {event.object, event.partner} & passable]
-    own = [event for event in solid if {event.object, event.partner} & robots]
-    return own, [event for event in solid if not {event.object, event.partner} & robots]
+    own, others = list[Event](), list[Event]()
+    for event in events:
+        if event.kind in kinds and event.object not in passable and event.partner not in passable:
+            (own if event.object in robots or event.partner in robots else others).append(event)
+    return own, others
 
 
 def star_marks(

@@ -148,16 +148,17 @@ class ModernStyle:
         own, others = signs.touches(
             events, {thing.view.name for thing in things if thing.kind == "robot"}, passable_names(simulation)
         )
-        touched = crowd.level, [(one.x, one.y) for one in others], [(one.x, one.y) for one in own]
+        level = crowd.level
+        touched = level, [(one.x, one.y) for one in others], [(one.x, one.y) for one in own]
         if self._stars[0] != touched:
-            self._stars = touched, signs.star_marks(own, others, layout, theme, level=crowd.level)
+            self._stars = touched, signs.star_marks(own, others, layout, theme, level=level)
         marks += self._stars[1]
         for thing in things:
             if thing.kind == "robot" and thing.shown and (thing.state or thing.picked):
                 marks += self._made(
                     ("sign", thing.number),
-                    (thing.around, thing.state, thing.picked, crowd.level, thing.hit),
-                    lambda: signs.state_marks(thing, layout, theme, level=crowd.level),  # noqa: B023 - called at once
+                    (thing.around, thing.state, thing.picked, level, thing.hit),
+                    lambda: signs.state_marks(thing, layout, theme, level=level),  # noqa: B023 - called at once
                 )
         labels += self._same(("axes",), lambda: ([], frame.axis_labels(layout, theme)))[1] if request.axes else []
         wishes = names.wishes_of(things, own, crowd, layout, theme) if request.names else []
@@ -285,14 +286,14 @@ class ModernStyle:
     ) -> tuple[list[Mark], list[Group], bool]:
         """Trails, goals and plans, and whether trails have beads."""
         theme, simulation, marks = self.theme, self.simulation, list[Mark]()
-        beaded = layout.sizes.kind == "normal" and 0 < crowd.robots <= ways.MAX_BEADED
+        beaded, most = layout.sizes.kind == "normal" and 0 < crowd.robots <= ways.MAX_BEADED, crowd.level
         trails: dict[tuple[bool, int], list[Thing]] = {}
         plans, any_beads = list[tuple[Thing, Floats]](), False
         for thing in things:
             robot = thing.kind == "robot"
             if not thing.shown or thing.kind == "still":
                 continue
-            level = 0 if thing.picked else crowd.level
+            level = 0 if thing.picked else most
             if thing.wants("show_trajectory"):
                 trails.setdefault((robot, level if robot else 0), []).append(thing)
                 if beaded and robot and (count := ways.bead_count(thing, simulation)):
@@ -302,7 +303,7 @@ class ModernStyle:
                         (count, int(simulation.state.scene[self.world]), simulation.revision),
                         lambda: ways.bead_marks(thing, count, simulation, layout, theme),  # noqa: B023 - called at once
                     )
-            if not (thing.wants("show_goal", robot) and (crowd.level < 2 or thing.picked)):
+            if not (level < 2 and thing.wants("show_goal", robot)):
                 continue
             goals = ways.remaining_goals(thing, simulation)
             if goals:

@@ -91,16 +91,17 @@ def trail_groups(
     edges = [thing.shades.edge for thing in things]
     tints = {edge: _tints(edge, theme.paper, robot, widths, robot and level > 0) for edge in dict.fromkeys(edges)}
     pieces = ranges.reshape(-1, 2)
-    drawn = np.flatnonzero(pieces[:, 1] > pieces[:, 0])
-    if not len(drawn):
-        return []
+    drawn = pieces[:, 1] > pieces[:, 0]
     every_look, every_number = list[Look](), list[int]()
     for thing, edge in zip(things, edges, strict=True):
         every_look += tints[edge]
         every_number += [thing.number] * len(tints[edge])
     chosen = drawn.tolist()
-    looks, numbers = [every_look[piece] for piece in chosen], [every_number[piece] for piece in chosen]
-    radii = np.full(len(drawn), NO_CIRCLE)
+    looks = list(itertools.compress(every_look, chosen))
+    numbers = list(itertools.compress(every_number, chosen))
+    if not looks:
+        return []
+    radii = np.full(len(looks), NO_CIRCLE)
     return [Group("trajectory", zorder, False, numbers, points, pieces[drawn], radii, looks)]
 
 
