@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.text import plural, quoted, seconds
+from irsim.common.text import plural, seconds
+from irsim.episodes.scene_summary import called
 from irsim.navigation.clearances import approaches
 from irsim.scenario.resolve.braking import follow_text
 from irsim.scenario.yaml.formatting import flow
@@ -108,7 +109,8 @@ def jam_message(simulation: Simulation, held: dict[str, Event]) -> str | None:
         return None
     count = sum(is_moving_obstacle(record) for record in simulation.scenario.objects)
     first = min(held.values(), key=lambda event: event.step)
-    hit = f"{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
+    one, other = called(simulation.scenario, first.object), called(simulation.scenario, first.partner)
+    hit = f"{one} hit {other} at {seconds(first.time)}"
     return (
         f"{len(held)} of {plural(count, 'moving obstacle')} {'was' if len(held) == 1 else 'were'} stopped by "
         f"a collision ({'first ' * (len(held) > 2)}{hit}): collision_mode: unobstructed_obstacles lets them go on"
@@ -141,13 +143,14 @@ def find_obstruction(
     if not close:
         return None
     near = next((near for near in close if near.partner in held), close[0])
-    where = f"{quoted(near.partner)} is {near.distance:.2f} m from it"
+    other = called(simulation.scenario, near.partner)
+    where = f"{other} is {near.distance:.2f} m from it"
     if near.partner in held:
         since = seconds(held[near.partner].time)
         return Obstruction(f"{where} and has been stopped since a collision at {since}", held=True)
     name = reactive_behavior(record)
     pushed = simulation.scenario.world.collision_mode == "contact" and near.distance < _PUSHED
-    where = f"it pushes against {quoted(near.partner)}" if pushed else where
+    where = f"it pushes against {other}" if pushed else where
     if name is None or near.partner not in still:
         return Obstruction(where, held=False, pushed=pushed)
     lacks = ", and a car cannot turn on the spot" if car else ""
@@ -171,7 +174,7 @@ def no_way_message(simulation: Simulation, events: Sequence[Event], name: str) -
     if event.partner is None:
         return _no_path_message(simulation, name)
     row = next(i for i, record in enumerate(simulation.scenario.objects) if record.name == event.partner)
-    other = quoted(event.partner)
+    other = simulation.scenario.objects[row].called
     if simulation.arrived[row]:
         yields = simulation.scenario.world.after_arrival == "yield"
         room = "" if yields else ", or let arrived robots make room: after_arrival: yield"

@@ -2,31 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
-import shapely
-from shapely.affinity import affine_transform
-from shapely.geometry import LineString
-from shapely.geometry.base import BaseGeometry
-
-import irsim._core as core
 from irsim.common.text import clean, plural
 from irsim.diagnostics.diagnostic import Diagnostic, Path, suggestion
+from irsim.episodes.scene_facts import Scene
 from irsim.policies.catalog import UnknownPolicyError, policy_names
-from irsim.policies.scene_cards import SCENE_CARDS, OptionValues, SceneCard, Span
-from irsim.scenario.resolve.body_size import SizedBody, SizedShape, has_fixed_shape, reach_of
-from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+from irsim.policies.scene_cards import SCENE_CARDS, OptionValues, SceneCard
+from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.rewrite import yaml_flow
 
 __all__ = [
     "UNSUITED",
     "Misfit",
-    "Scene",
     "Suited",
     "check_policy_name",
     "law_findings",
@@ -37,8 +28,6 @@ __all__ = [
 
 UNSUITED = "policy-unsuited"
 """Code of the warning about a policy outside its card."""
-_WALL_REACH = 0.8
-"""Static obstacles that reach at least this far from their middle are walls, which have to be driven around [m]."""
 _CANNOT, _OTHER_KIND, _FURTHER = 3, 2, 1
 """How far a scene is from a card: the policy cannot drive there; the scene has what the card does not; a number lies
 outside of the range of the card."""
@@ -84,87 +73,6 @@ class Suited:
     misfits: list[Misfit] = field(default_factory=list)
 
 
-@dataclass(frozen=True)
-class Scene:
-    """The facts of a scenario that decide which policy suits it."""
-
-    scenario: ResolvedScenario
-
-    @cached_property
-    def robots(self) -> list[ObjectRecord]:
-        """Its robots that can move."""
-        return [one for one in self.scenario.robots() if one.kinematics is not None and not one.static]
-
-    @cached_property
-    def people(self) -> list[ObjectRecord]:
-        """Obstacles that move."""
-        return [one for one in self.scenario.objects if one.role != "robot" and not one.static and not one.unobstructed]
-
-    @cached_property
-    def unyielding(self) -> list[ObjectRecord]:
-        """People who do not give way to robots."""
-        return [
-            one for one in self.people
-            if one.target_roles == "obstacle" or not getattr(one.active_behavior, "avoids", False)
-        ]  # fmt: skip
-
-    @cached_property
-    def static(self) -> list[ObjectRecord]:
-        """Static obstacles that are in the way, without the map and the walls round the world."""
-        return [
-            one for one in self.scenario.objects
-            if one.role != "robot" and one.static and not one.unobstructed and not one.is_terrain
-        ]  # fmt: skip
-
-    @cached_property
-    def has_map(self) -> bool:
-        """Whether the world has a map."""
-        return any(one.is_map for one in self.scenario.objects)
-
-    @property
-    def crowding(self) -> float:
-        """Robots and moving obstacles on 100 m2 of the world."""
-        world = self.scenario.world
-        return 100 * (len(self.robots) + len(self.people)) / max(1.0, world.width * world.height)
-
-    @cached_property
-    def speeds(self) -> Span:
-        """Least and greatest top speed of its robots [m/s]."""
-        return _span([SizedBody(one, SizedShape(one.shape)).speed for one in self.robots])
-
-    @cached_property
-    def radii(self) -> Span:
-        """Least and greatest radius of its robots [m]."""
-        return _span([_radius(one) for one in self.robots])
-
-    @cached_property
-    def longest_way(self) -> float:
-        """Longest straight leg of a robot whose start is written [m]; 0 without one."""
-        return max((math.dist(*leg) for leg in self._legs()), default=0.0)
-
-    @cached_property
-    def walls_between(self) -> int:
-        """Walls on a straight leg of a robot."""
-        legs = [LineString(leg) for leg in self._legs() if math.dist(*leg) > 0]
-        placed = {index for placement in self.scenario.placements for index in placement.objects}
-        walls = (one for one in self.static if one.id not in placed and has_fixed_shape(one.shape))
-        outlines = [_outline(one) for one in walls if reach_of(one.shape) >= _WALL_REACH]
-        return sum(any(outline.intersects(leg) for leg in legs) for outline in outlines)
-
-    @cached_property
-    def kind(self) -> str:
-        """``walls`` with walls or a map, else ``robots`` with several robots and no people; else empty."""
-        if self.has_map or any(reach_of(one.shape) >= _WALL_REACH for one in self.static):
-            return "walls"
-        return "robots" if len(self.robots) > 1 and not self.people else ""
-
-    def _legs(self) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
-        placed = {index for placement in self.scenario.placements for index in placement.objects}
-        for one in self.robots:
-            if one.id not in placed:
-                yield from SizedBody(one, SizedShape(one.shape)).legs
-
-
 def misfits_of(card: SceneCard, scene: Scene) -> list[Misfit]:
     """All ways in which a scene lies outside the card of a policy, the worst first."""
     misfits = [*_of_robots(card, scene), *_of_surroundings(card, scene), *_of_numbers(card, scene)]
@@ -187,7 +95,9 @@ def _of_robots(card: SceneCard, scene: Scene) -> Iterator[Misfit]:
 def _of_surroundings(card: SceneCard, scene: Scene) -> Iterator[Misfit]:
     made = "was trained" if card.origin == "trained" else "is made"
     count = len(scene.static)
-    if card.static == "none" and (count or scene.has_map):
+    if card.static == "none" and card.origin == "law":
+        yield from _in_the_way(scene)
+    elif card.static == "none" and (count or scene.has_map):
         seen = "a map" if scene.has_map else plural(count, "static obstacle")
         yield Misfit(
             "static",
@@ -213,6 +123,21 @@ def _of_surroundings(card: SceneCard, scene: Scene) -> Iterator[Misfit]:
     if card.arrival is not None and arrival not in (None, card.arrival) and len(scene.robots) > 1:
         what = f"{made} with after_arrival: {card.arrival}; this scene has {arrival}"
         yield Misfit("arrival", _FURTHER, what, str(arrival), card.arrival)
+
+
+def _in_the_way(scene: Scene) -> Iterator[Misfit]:
+    """What stands, or may stand, where a law that avoids nothing drives straight on."""
+    what = ""
+    if scene.has_map:
+        what = seen = "a map"
+    elif scene.static_on_ways:
+        seen = plural(scene.static_on_ways, "static obstacle")
+        what = f"{seen} on its straight ways"
+    elif scene.drawn_static:
+        seen = plural(scene.drawn_static, "static obstacle")
+        what = f"{seen} at places that each seed draws"
+    if what:
+        yield Misfit("static", _OTHER_KIND, f"avoids nothing; this scene has {what}", seen, "free straight ways")
 
 
 def _of_numbers(card: SceneCard, scene: Scene) -> Iterator[Misfit]:
@@ -345,31 +270,3 @@ def law_findings(scenario: ResolvedScenario) -> list[Diagnostic]:
 
 def _defaults(law: Any, keys: Iterable[str]) -> set[Any]:
     return {type(law).model_fields[key].default for key in keys}
-
-
-def _span(values: Sequence[float]) -> Span:
-    return (min(values), max(values)) if values else (0.0, 0.0)
-
-
-def _radius(one: ObjectRecord) -> float:
-    """Largest distance of the outline from the middle of the body [m]."""
-    drawn = getattr(one.shape, "radius_range", None) or getattr(one.shape, "avg_radius_range", None)
-    if getattr(one.shape, "random_shape", False) and drawn:
-        return float(drawn[1])
-    size = SizedShape(one.shape)
-    return size.around if size.disc > 0 else reach_of(one.shape)
-
-
-def _outline(one: ObjectRecord) -> BaseGeometry:
-    """The outline of a static obstacle in the world."""
-    x, y, heading = (*one.state[:2], one.state[2] if len(one.state) > 2 else 0.0)
-    cos, sin = math.cos(heading), math.sin(heading)
-    shapes: list[BaseGeometry] = []
-    for part in SizedShape(one.shape).parts:
-        if isinstance(part, core.Circle):
-            shapes.append(shapely.Point(part.center).buffer(part.radius))
-        elif isinstance(part, core.Polygon):
-            shapes.append(shapely.Polygon([tuple(point) for point in part.vertices]))
-        elif isinstance(part, core.Linestring):
-            shapes.append(LineString([tuple(point) for point in part.vertices]))
-    return affine_transform(shapely.GeometryCollection(shapes), [cos, -sin, sin, cos, x, y])

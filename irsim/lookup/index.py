@@ -13,6 +13,7 @@ from irsim.lookup.answer import Answer, Key, first_sentence
 from irsim.lookup.language import language_schema
 from irsim.lookup.metrics import METRIC_TOPICS
 from irsim.lookup.schema_walk import mappings, yaml_text
+from irsim.lookup.sizes import settings_asked
 from irsim.lookup.things import ALL_GUIDES, NO
 from irsim.options.registry import REGISTRIES, Registry
 
@@ -148,11 +149,12 @@ def templates_answer() -> Answer:
     return Answer(topic="templates", kind="index", title="Templates: whole scenarios", groups={"templates": lines})
 
 
-def template_answer(template: Template) -> Answer:
+def template_answer(template: Template, question: str = "") -> Answer:
     """Show a template and its parameters.
 
     Args:
         template: The template.
+        question: Free text that it answers, whose numbers the example sets.
     """
     keys = [
         Key(
@@ -166,12 +168,16 @@ def template_answer(template: Template) -> Answer:
         for name, parameter in template.parameters.items()
     ]
     first = keys[0] if keys else None
-    setting = f" --set {first.name}={first.default}" if first else ""
+    asked, misfits = settings_asked(template, question)
+    shown = asked or ({} if first is None else {first.name: str(first.default)})
+    setting = "".join(f" --set {name}={value}" for name, value in shown.items())
     return Answer(
         topic=template.name,
         kind="template",
         title=f"template {template.name}: {template.title}",
-        text=f"{template.purpose} {template.prospect()} {PICTURE} {templates.picture_file(template.name)}",
+        text=" ".join(
+            [*misfits, template.purpose, template.prospect(), PICTURE, str(templates.picture_file(template.name))]
+        ),
         groups={"parameters": keys},
         example=f"irsim new {template.name}{setting} -o -  # prints it; without -o - it writes {template.name}.yaml",
         see=["templates"],

@@ -12,9 +12,10 @@ from irsim.common.text import clean
 from irsim.learning.tasks.files import TASKS
 from irsim.lookup import full_text
 from irsim.lookup.answer import Answer, Key, TopicError, first_sentence
-from irsim.lookup.index import all_codes, code_answer
+from irsim.lookup.index import all_codes, code_answer, template_answer
 from irsim.lookup.metrics import METRIC_TOPICS, metric_line
 from irsim.lookup.schema_walk import Node, alternatives, paths, step
+from irsim.lookup.sizes import without_sizes
 from irsim.lookup.small_examples import example_of
 from irsim.lookup.synonyms import EVERYDAY, named
 from irsim.lookup.things import ALL_GUIDES
@@ -61,23 +62,27 @@ def search_answer(schema: Node, topic: str, words: list[str], explain: Callable[
     code = next((name for name in all_codes() if sorted(name.split("-")) == sorted(re.split(r"[\s_-]+", wanted))), None)
     if code is not None:
         return code_answer(code)
+    query = without_sizes(topic)
     topics, (documents, lines) = all_topics(schema), _documents(schema, keys)
     metrics = [full_text.Document(name, f"{m.key} metric", m.text) for name, m in METRIC_TOPICS.items()]
     lines |= {name: Key(name=name, text=metric_line(metric)) for name, metric in METRIC_TOPICS.items()}
-    names, unknown = full_text.best(documents, topic)
-    if not names or not full_text.best(metrics, topic)[1]:  # without a word of their own, metrics are not meant
-        names, unknown = full_text.best(documents + metrics, topic)
+    names, unknown = full_text.best(documents, query)
+    if not names or not full_text.best(metrics, query)[1]:  # without a word of their own, metrics are not meant
+        names, unknown = full_text.best(documents + metrics, query)
     called = named(topic)
     unknown = [word for word in unknown if not any(word in full_text.words_of(EVERYDAY[name]) for name in called)]
     if not (called or names) or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _MIN_LIKENESS)):
         raise TopicError(topic, near_topics(topics, words))
     lines |= {name: _line_of(schema, name) for name in called}
     guides = {document.name: document for document in documents if document.name in ALL_GUIDES}
-    whole = [name for name in names if name in guides and full_text.has_all(guides[name], topic)]
+    whole = [name for name in names if name in guides and full_text.has_all(guides[name], query)]
     first = [] if _is_named_whole(topic, called) else whole[:1]
     hits = [lines[name] for name in dict.fromkeys([*first, *called[:_MAX_EVERYDAY], *names])][:MAX_HITS]
-    title = f"{len(hits)} topics fit '{clean(wanted)}' best" if len(hits) > 1 else f"About '{clean(wanted)}'"
-    return _hits_answer(wanted, hits, title, unknown).model_copy(update={"best": explain(hits[0].name)})
+    said = clean(" ".join(topic.lower().split()))
+    title = f"{len(hits)} topics fit '{said}' best" if len(hits) > 1 else f"About '{said}'"
+    top = hits[0].name
+    best = template_answer(templates.load(top), topic) if top in templates.names() else explain(top)
+    return _hits_answer(said, hits, title, unknown).model_copy(update={"best": best})
 
 
 def _is_searched(path: tuple[str, ...]) -> bool:

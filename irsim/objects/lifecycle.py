@@ -47,7 +47,7 @@ def set_views(simulation: Simulation, shown: Sequence[Any]) -> None:
 def renumber(view: SimObject, number: int) -> None:
     """Change the id of an object in a simulation of its own, and its name if that was generated from the id."""
     record, simulation = view.record, view._simulation
-    name = f"{record.role}_{number}" if record.name == f"{record.role}_{record.id}" else record.name
+    name = record.name if record.is_named else f"{record.role}_{number}"
     scenario = replace(simulation.scenario, objects=[replace(record, id=number, name=name)])
     vars(view).update(id=number, name=name)
     simulation.exchange(scenario, [(simulation, 0)])

@@ -12,9 +12,27 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Outcome", "explored_share", "is_over", "moves_by_itself", "outcome_of", "robot_outcomes"]
+__all__ = ["Outcome", "collided_robots", "explored_share", "is_over", "moves_by_itself", "outcome_of", "robot_outcomes"]
 
 Outcome = Literal["running", "success", "collision", "timeout"]
+
+
+def collided_robots(simulation: Simulation, world: int = 0, events: list[Event] | None = None) -> set[str]:
+    """Return the names of the robots that have collided so far, not counting collisions after their arrival.
+
+    Args:
+        simulation: The simulation.
+        world: Index of the world.
+        events: Events of the world, if they have already been read.
+    """
+    events = read_events(simulation, world) if events is None else events
+    arrivals, collisions = first_events(events, "arrival"), first_collisions(simulation, events)
+    robots = {record.name for record in simulation.scenario.objects if record.role == "robot"}
+    return {
+        name
+        for name, hit in collisions.items()
+        if name in robots and (name not in arrivals or hit.step <= arrivals[name].step)
+    }
 
 
 def robot_outcomes(simulation: Simulation, world: int = 0, events: list[Event] | None = None) -> dict[str, Outcome]:
@@ -29,18 +47,16 @@ def robot_outcomes(simulation: Simulation, world: int = 0, events: list[Event] |
         events: Events of the world, if they have already been read.
     """
     events = read_events(simulation, world) if events is None else events
-    arrivals, collisions = first_events(events, "arrival"), first_collisions(simulation, events)
+    arrivals, collided = first_events(events, "arrival"), collided_robots(simulation, world, events)
     outcomes: dict[str, Outcome] = {}
     for row, record in enumerate(simulation.scenario.objects, world * simulation.objects):
         if record.role != "robot":
             continue
-        arrival, collision = arrivals.get(record.name), collisions.get(record.name)
-        if arrival is None:
-            stopped = collision is not None and bool(simulation.stopped[row])
-            outcomes[record.name] = "collision" if stopped else "running"
+        if record.name in arrivals:
+            outcomes[record.name] = "collision" if record.name in collided else "success"
         else:
-            before = collision is not None and collision.step <= arrival.step
-            outcomes[record.name] = "collision" if before else "success"
+            stopped = record.name in collided and bool(simulation.stopped[row])
+            outcomes[record.name] = "collision" if stopped else "running"
     return outcomes
 
 

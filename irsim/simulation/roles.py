@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.scenario.resolve.resolved import PERSON_TAG
+
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
 
@@ -28,7 +30,6 @@ __all__ = [
 KINDS = ("robot", "human", "static")
 """Kinds of objects, in the order of the numbers below."""
 ROBOT, HUMAN, STATIC, IGNORED = range(4)
-_HUMAN_TAG = "pedestrian"
 _PERSON_WORDS = frozenset(
     {
         *("pedestrian", "person", "people", "human", "walker", "visitor", "child", "children", "kid", "adult", "man"),
@@ -84,7 +85,7 @@ def travelling_humans(records: Sequence[ObjectRecord]) -> frozenset[str]:
 def _kind(record: ObjectRecord) -> int:
     if record.unobstructed:
         return IGNORED
-    if _HUMAN_TAG in record.tags:
+    if PERSON_TAG in record.tags:
         return HUMAN
     if record.role == "robot":
         return ROBOT

@@ -21,6 +21,7 @@ from irsim.episodes.obstructions import find_obstruction, heading_message, jam_m
 from irsim.episodes.opening import MAX_TRIES, crowded_message, first_with_room
 from irsim.episodes.progress import find_circling, has_one_end, no_progress_since
 from irsim.episodes.rounds import when_it_ends
+from irsim.episodes.scene_summary import called
 from irsim.episodes.watching import zone_results, zones_message
 from irsim.results.episode import EventRecord
 from irsim.results.validation import DryRun, Stuck
@@ -172,7 +173,7 @@ def _summarise(
                 _progress_message(trace, len(names), arrived, parked, ended, cut),
                 *filter(None, [when_it_ends(facts.robots.values())]),
                 *filter(None, [between_steps_message(env.simulation, facts.between, hits)]),
-                *_problem_messages(hits, stuck, count),
+                *_problem_messages(scenario, hits, stuck, count),
                 *filter(
                     None,
                     (
@@ -244,7 +245,7 @@ def _certain_cause(env: Env, record: ObjectRecord, trace: Trace, index: int, eve
     if trace.stopped[-1, index] or trace.collided[-1, index]:
         hit = next((e for e in events if e.kind == "collision" and record.name in (e.object, e.partner)), None)
         if hit is not None:
-            return f"it hit '{partner_of(hit, record.name)}' at {seconds(hit.time)}"
+            return f"it hit {called(env.simulation.scenario, partner_of(hit, record.name))} at {seconds(hit.time)}"
     if record.kinematics is None or record.static:
         return "it is static" if record.kinematics is not None else "it has no kinematics"
     if _is_undriven(record):
@@ -282,14 +283,17 @@ def _progress_message(
     return f"{begin}{len(arrived)} of {robots} robots arrived{still * bool(parked)}"
 
 
-def _problem_messages(hits: Sequence[Event], stuck: Sequence[Stuck], count: int) -> list[str]:
+def _problem_messages(
+    scenario: ResolvedScenario, hits: Sequence[Event], stuck: Sequence[Stuck], count: int
+) -> list[str]:
     """Messages about collisions and about robots that make no progress."""
     parts = []
     if hits:
         first = hits[0]
         several = f"{len(hits)} collisions, the first of " if len(hits) > 1 else "collision of "
         place = f"at {seconds(first.time)}, contact near ({first.x:.2f}, {first.y:.2f})"
-        parts.append(f"{several}'{first.object}' with '{first.partner}' {place}")
+        pair = f"{called(scenario, first.object)} with {called(scenario, first.partner)}"
+        parts.append(f"{several}{pair} {place}")
     if stuck:
         parts.append(f"'{stuck[0].name}' {stuck[0].doing} since {seconds(stuck[0].since)}: {stuck[0].why}")
     if count > 1:

@@ -63,6 +63,16 @@ def test_a_policy_trained_without_obstacles_does_not_suit_a_hall_with_pillars() 
     assert policies["dash"].fits == "no"
 
 
+def test_dash_suits_a_scene_whose_obstacles_leave_its_straight_way_free() -> None:
+    """The verdict is what an episode shows."""
+    post = "obstacle:\n  - {{shape: {{name: circle, radius: 0.3}}, state: [6, {}, 0]}}\n"
+    aside, ahead = (scene(post.format(y), "dash") for y in (7, 6))
+    assert (ranked(aside)["dash"].fits, irsim.run(text=aside).outcome) == ("yes", "success")
+    assert (ranked(ahead)["dash"].fits, irsim.run(text=ahead).outcome) == ("no", "collision")
+    assert ranked(ahead)["dash"].reason == "avoids nothing; this scene has 1 static obstacle on its straight ways"
+    assert "14 static obstacles at places that each seed draws" in ranked(scene(PILLARS))["dash"].reason
+
+
 def test_walls_on_the_way_ask_for_a_plan() -> None:
     policies = ranked(scene(WALL))
     best = next(iter(policies.values()))

@@ -85,8 +85,13 @@ def test_a_gallery_page_shows_its_player(chromium: Any, address: str) -> None:
     page.goto(f"{address}/gallery/crossing.html")
     page.locator("iframe.irsim-player").scroll_into_view_if_needed()
     frame = page.frame_locator("iframe.irsim-player")
-    frame.locator("canvas").first.wait_for(timeout=15_000)
+    canvas = frame.locator("canvas").first
+    canvas.wait_for(timeout=15_000)
+    world = canvas.bounding_box()
     page.context.close()
+    assert world is not None
+    assert world["width"] > 800, "the world uses the width of the page"
+    assert world["height"] > 450
 
 
 def test_the_search_page_answers(chromium: Any, address: str) -> None:

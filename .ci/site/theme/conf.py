@@ -25,7 +25,7 @@ html_show_copyright = False
 html_last_updated_fmt = None
 html_permalinks = True
 html_use_index = False
-html_sidebars = {"index": [], "gallery/index": [], "search": []}
+html_sidebars = {"index": [], "gallery/**": [], "search": []}
 html_context = {"default_mode": "auto"}
 html_theme_options = {
     "logo": {"text": "irsim"},

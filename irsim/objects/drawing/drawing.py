@@ -52,7 +52,7 @@ class Drawing:
     def label(self) -> str:
         """Name in pictures: the one that the user gave, if fonts have its letters; else ``short_label``."""
         view: SimObject = self.__dict__["_view"]
-        unnamed = view.name == f"{view.role}_{view.id}" or max(view.name, default="") >= _NO_GLYPHS
+        unnamed = not view.record.is_named or max(view.name, default="") >= _NO_GLYPHS
         return self.short_label if unnamed else clean(view.name, MAX_LABEL)
 
     @property

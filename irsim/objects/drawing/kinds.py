@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from irsim.scenario.resolve.resolved import PERSON_TAG
+
 if TYPE_CHECKING:
     from irsim.graphics.scene.theme import Kind
     from irsim.scenario.resolve.resolved import ObjectRecord
 
-__all__ = ["PERSON_TAG", "kind_of"]
-
-PERSON_TAG = "pedestrian"
-"""Tag of the obstacles that are drawn as people."""
+__all__ = ["kind_of"]
 
 
 def kind_of(record: ObjectRecord) -> Kind:

@@ -31,12 +31,12 @@ _ARC_POINTS = 12
 _MAX_NAME = 40
 
 
-def outcome_word(simulation: Simulation, world: int, collisions: int) -> str:
-    """The state of an episode so far: start, running, arrived, stopped, timeout, or the number of collisions."""
-    if collisions:
-        return plural(collisions, "collision")
+def outcome_word(simulation: Simulation, world: int, collided: int) -> str:
+    """The state of an episode so far: start, running, arrived, stopped, timeout, or how many robots have collided."""
     first = world * simulation.objects
     arrived = simulation.arrived[first : first + simulation.objects][simulation.robots]
+    if collided:
+        return "collided" if arrived.size == 1 else f"{collided} collided"
     if arrived.size and arrived.all():
         return "arrived"
     if int(simulation.count[world]) == 0:
@@ -172,7 +172,7 @@ def _sign(sign: str, layout: Layout, theme: Theme, x: float, y: float) -> list[M
 
 
 def _word_color(word: str, theme: Theme) -> str:
-    if "collision" in word:
+    if "collided" in word:
         return theme.danger
     return {"arrived": theme.good, "timeout": theme.warn, "stopped": theme.warn}.get(word, theme.muted)
 

@@ -66,11 +66,12 @@ def wishes_of(things: Sequence[Thing], own: Sequence[Event], crowd: Crowd, layou
     named = [thing for thing in things if _has_name(thing, level)]
     first = [thing.picked or thing.state == "collided" for thing in named]
     wishes = [_name_wish(thing) for thing in compress(named, first)]
+    short = level > 0  # colours repeat, so that robots need a name, and full ones have no room
     if level < 2 and len(own) <= CROWD["timed"]:
         for number, event in enumerate(own):
             place, text = (float(event.x), float(event.y)), f"{event.time:.1f} s"
             wishes.append(Wish(FRAME - number, "moment", text, theme.danger, place, (star, star), False))
-    return wishes + [_name_wish(thing) for thing, early in zip(named, first, strict=True) if not early]
+    return wishes + [_name_wish(thing, short=short) for thing, early in zip(named, first, strict=True) if not early]
 
 
 def _has_name(thing: Thing, level: int) -> bool:
@@ -79,14 +80,15 @@ def _has_name(thing: Thing, level: int) -> bool:
     if thing.kind != "robot":
         chosen = "show_text" in thing.chosen and thing.view.shape != "walls"
         return chosen and thing.wants("show_text", False)
-    chosen = level == 0 or thing.picked or (thing.state == "collided" and level < 2)
-    return chosen and thing.wants("show_text")
+    return (level < 2 or thing.picked) and thing.wants("show_text")
 
 
-def _name_wish(thing: Thing) -> Wish:
+def _name_wish(thing: Thing, *, short: bool = False) -> Wish:
+    """The name of a thing; of a robot without one of its own ``robot_13``, or short ``r13``."""
     view, drawing = thing.view, thing.view.drawing
-    unnamed = view.name == f"{view.role}_{view.id}"
-    text = (view.name if unnamed else drawing.label) if drawing.text is None else str(drawing.text)
+    text = (
+        (drawing.label if short or view.record.is_named else view.name) if drawing.text is None else str(drawing.text)
+    )
     shape = Circle(*thing.drawn_at[:2], thing.body.radius) if thing.mark is None else thing.mark.geometry
     left, bottom, right, top = bounds(shape)
     reach = max((right - left) / 2, thing.glyph_radius), max((top - bottom) / 2, thing.glyph_radius)

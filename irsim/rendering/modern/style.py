@@ -16,6 +16,7 @@ from irsim.rendering.modern import bodies, frame, ground, heading, names, sensin
 from irsim.rendering.modern.layout import Layout
 from irsim.rendering.modern.things import MANY_PEOPLE, Crowd, Thing, read_things
 from irsim.simulation.events import Event, passable_names, read_events
+from irsim.simulation.outcome import collided_robots
 
 if TYPE_CHECKING:
     from irsim.objects.drawing.scene_builder import SceneBuilder
@@ -170,7 +171,8 @@ class ModernStyle:
         self.notes = _notes(crowd, dropped)
         marks += self._page
         velocities = any(sensing.measures_velocity(beams, by_number[beams.object]) for beams in scene.beams)
-        parts = [self._heading(scene, things, crowd, sum(e.kind == "collision" for e in own), layout, request)]
+        collided = len(collided_robots(simulation, self.world, list(events)))
+        parts = [self._heading(scene, things, crowd, collided, layout, request)]
         if layout.sizes.kind != "strip":
             parts.append(self._same(("foot",), lambda: frame.foot(layout, theme)))
             parts.append(
@@ -335,11 +337,11 @@ class ModernStyle:
         return replace(mark, zorder=layer.get(mark.part, USER_ZORDER))
 
     def _heading(
-        self, scene: Scene, things: Sequence[Thing], crowd: Crowd, collisions: int, layout: Layout, request: Request
+        self, scene: Scene, things: Sequence[Thing], crowd: Crowd, collided: int, layout: Layout, request: Request
     ) -> tuple[list[Mark], list[Label]]:
         if not request.head:
             return [], []
-        self.word = word = heading.outcome_word(self.simulation, self.world, collisions)
+        self.word = word = heading.outcome_word(self.simulation, self.world, collided)
         if layout.sizes.kind == "strip":
             name, shown, facts = "", "" if word == request.said else word, list[str]()
         else:
@@ -368,7 +370,7 @@ def name_of(simulation: Simulation) -> str:
 def _notes(crowd: Crowd, dropped: int) -> list[str]:
     notes = []
     if crowd.level == 1:
-        notes.append("with more than 12 robots only the ones that collided have names, and plans are left out")
+        notes.append("with more than 12 robots names are short, as r13 for robot_13, and plans are left out")
     if crowd.level == 2:
         notes.append("with more than 50 robots names, goals, plans and scans are left out")
     if dropped:

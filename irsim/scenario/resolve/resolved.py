@@ -11,6 +11,7 @@ from irsim.common.text import quoted
 from irsim.components.options import BehaviorOptions, CustomOptions
 
 __all__ = [
+    "PERSON_TAG",
     "DrawnQuantity",
     "ObjectRecord",
     "Placement",
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from irsim.scenario.model.scenario import Gui, ObjectPlot, WorldModel
 
 
+PERSON_TAG = "pedestrian"
+"""Tag of the obstacles that are people, in pictures and in sentences."""
 _TERRAIN = {"map": "the map", "walls": "the walls round the world"}
 """Shapes that keys of ``world`` make -> how a sentence calls them."""
 
@@ -122,9 +125,23 @@ class ObjectRecord:
         return self.shape.name in _TERRAIN
 
     @property
+    def is_person(self) -> bool:
+        """Whether the scenario says that it is a person."""
+        return self.role != "robot" and PERSON_TAG in self.tags
+
+    @property
+    def is_named(self) -> bool:
+        """Whether the scenario gives it a name; else it has one of its role and number."""
+        return self.name != f"{self.role}_{self.id}"
+
+    @property
     def called(self) -> str:
-        """How a sentence calls it: its name in quotes, or ``the map``, ``the walls round the world``."""
-        return _TERRAIN.get(self.shape.name, quoted(self.name))
+        """How a sentence calls it: its name in quotes, or ``the map``, ``the walls round the world``.
+
+        People without a name of their own are ``the person 'obstacle_7'``, a name that commands know.
+        """
+        kind = "the person " if self.is_person and not self.is_named else ""
+        return _TERRAIN.get(self.shape.name, kind + quoted(self.name))
 
     @property
     def active_behavior(self) -> Any:

@@ -36,7 +36,7 @@ from tests.rendering.modern.conftest import (
 )
 
 SIX = ("crossing", "warehouse", "crowd", "doorway", "cave", "fmcw-watch")
-TITLE = re.compile(r"^.* \d+\.\d s (start|running|arrived|timeout|stopped|\d+ collisions?)$")
+TITLE = re.compile(r"^.* \d+\.\d s (start|running|arrived|timeout|stopped|(\d+ )?collided)$")
 ALONE = """
 world: {{width: 6, height: 5, step_time: 0.1}}
 robot:
@@ -123,7 +123,7 @@ def test_a_robot_that_touched_something_has_not_just_arrived(opened: Opened) -> 
     env = opened(WALL)
     take(env, 60)
     scene, layout = picture_of(env)
-    assert words_of(scene)["outcome"] == "1 collision"
+    assert words_of(scene)["outcome"] == "1 collided"
     assert words_of(scene)["facts"].startswith("1 of 2 arrived")
     [time] = labels_of(scene, "moment")
     [star] = [m for m in marks_of(scene, "contact") if m.fill == LIGHT.danger]

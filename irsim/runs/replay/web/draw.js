@@ -277,7 +277,8 @@ function drawNames(context, run, at, picked, camera, colors, ratio) {
     if (object.role !== "robot" && object.index !== picked) continue;
     const pose = poseAt(run, object.index, at), [x, y] = toPixels(camera, pose.x, pose.y);
     if (x < 0 || y < 0 || x > camera.width || y > camera.height) continue;
-    write(context, object.name, x, y - nameLift(run, object, camera), shade(colors, object, "name"), colors);
+    const short = crowding(run) > 0 && object.index !== picked;
+    write(context, short ? object.name.replace(/^robot_(?=\d+$)/, "r") : object.name, x, y - nameLift(run, object, camera), shade(colors, object, "name"), colors);
   }
 }
 

@@ -157,7 +157,7 @@ export async function show(bytes) {
   player.drawing = makeDrawing();
   player.camera = makeCamera(run.head.world);
   const first = run.robots.find((index) => run.lidars.has(index)) ?? run.robots[0] ?? -1;
-  Object.assign(shown, { at: 0, follow: false, robot: first, names: !crowding(run) });
+  Object.assign(shown, { at: 0, follow: false, robot: first, names: crowding(run) < 2 });
   fillPanel(player, actions.goToEvent);
   const length = run.time[run.rows - 1];
   actions.setSpeed(run.head.speed ?? SPEEDS.find((speed) => speed >= 1 && length / speed <= LONG) ?? SPEEDS.at(-1));

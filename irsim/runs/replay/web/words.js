@@ -19,8 +19,11 @@ export const manyWords = (kind) => MANY_OF[kind] ?? kind;
 export const metres = (value) => `${value.toFixed(2)} m`;
 export const seconds = (value) => `${value.toFixed(Math.abs(value) < 1000 ? 2 : 1)} s`;
 
+/** A name in a sentence; a person without a name of their own has the number of an obstacle. */
+const called = ({ kind, name }) => (kind === "person" && /^obstacle_\d+$/.test(name) ? `the person ${name}` : name);
+
 export function eventWords(run, { kind, object, partner, where }) {
-  const name = run.objects[object].name, whom = partner >= 0 ? ` ${run.objects[partner].name}` : where && ` ${where}`;
+  const name = called(run.objects[object]), whom = partner >= 0 ? ` ${called(run.objects[partner])}` : where && ` ${where}`;
   if (kind === "collision") return `${name} hits${whom || " something"}`;
   if (kind === "passed_through") return `${name} passes through${whom} between two steps`;
   if (kind === "contact_between_steps") return `${name} touches${whom} between two steps`;
