@@ -292,6 +292,31 @@ class PrmOptions(_Options):
 Cells = tuple[tuple[float, float], tuple[float, float], int, int]
 """Origin, cell size [m], columns, rows."""
 
+class Actuation(_Options):
+    """What happens to commands before a drive executes them; the numbers are for three controls, in their units.
+
+    Args:
+        command_period: Time for which a command is held [s]; 0: a step.
+        delay: Dead time [s].
+        resolution: Commands are rounded to multiples of this; 0: they are not.
+        jerk: Largest change of the rate of change [per s^2], may be infinite.
+        lag: Time constant [s].
+        dead_band: Smaller controls are executed as 0.
+        noise: Standard deviation of the executed control.
+    """
+
+    def __init__(
+        self,
+        *,
+        command_period: float,
+        delay: Sequence[float],
+        resolution: Sequence[float],
+        jerk: Sequence[float],
+        lag: Sequence[float],
+        dead_band: Sequence[float],
+        noise: Sequence[float],
+    ) -> None: ...
+
 class RouteOptions(_Options):
     """How an object plans a path for its behavior to follow; 0 switches `replan` or `lookahead` off.
 
@@ -582,6 +607,7 @@ class ObjectSpec:
         vanish_step: Step in which it leaves the world; 0: never.
         reflectivity: Share of the light of lidars that its surface throws back.
         material: What its surface does with the light of lidars with errors: "matt", "glass" or "mirror".
+        actuation: What happens to commands before the drive executes them; None executes them at once, within limits.
     """
 
     def __init__(
@@ -625,6 +651,7 @@ class ObjectSpec:
         vanish_step: int,
         reflectivity: float,
         material: str,
+        actuation: Actuation | None,
     ) -> None: ...
 
 class RandomPlacement:
@@ -821,6 +848,9 @@ class State:
     command: Floats  # (R, 3) control wanted for the next step
     commanded: Floats  # (R, 2) velocity that `follow_rows` last asked a row to follow, world frame; zero before [m/s]
     drive: Floats  # (R, 3) control of the drives in `collision_mode: contact`, before contacts change it
+    actuated: (
+        Floats  # (R, 12) of actuators: command held, control within limits, its rate, control after the lag; or (0, 12)
+    )
     contact_time: Floats  # (R,) time for which the row has touched something [s]
     air_time: Floats  # (R,) time for which the row has touched nothing [s]
     touching: Flags  # (R,) bit 0: in contact in the last step, bit 1: in the one before
@@ -908,6 +938,8 @@ class State:
         """Make the present pose (and extra rows) or control of the row, or both, the initial one for `reset`."""
     def route(self, row: int) -> Floats | None:
         """(K, 2) corners of the path that a row follows, from the place of planning to the goal; None without one."""
+    def rest(self, row: int) -> None:
+        """Let the actuators of a row be at rest at its present control, as if it had been commanded for long."""
     def opinions(self, row: int) -> list[tuple[int, float, float]]:
         """What an object with `avocado` thinks of others: number in :class:`ObjectSpec`, opinion, attention.
 
@@ -1004,6 +1036,14 @@ class Log:
     @property
     def control(self) -> NDArray[np.float32]:
         """(rows, movers, columns) controls."""
+
+    @property
+    def commanded(self) -> list[int]:
+        """Indices of the objects whose commands are recorded, because they pass through actuators."""
+
+    @property
+    def command(self) -> NDArray[np.float32]:
+        """(rows, commanded, columns) commands."""
 
     @property
     def goal_rows(self) -> NDArray[np.int64]: ...

@@ -48,11 +48,10 @@ DIFFERENCES: dict[str, Difference] = {
         "static walls are walls however they are written: a rectangle, polygon, compound, linestring or block of map "
         "cells of the same outline gives the same motion (under `follow`, too, unless it plans on the cells of a map: "
         "in worlds of more than 2,500 m^2, or where its own grid of 0.1 m shows no way). Walls that stand free are "
-        "passed on the nearer side by "
-        "`rvo`, `sfm`, `orca` and `avocado`, walls round the object block what reaches them; posts beside a free way "
-        "hold no robot back under `sfm`. `unobstructed` "
-        "linestrings count for `rvo` and `sfm` as in 2.12, other `unobstructed` walls for none. Moving polygons stay "
-        "discs, moving linestrings as in 2.12. `orca` also sees moving objects outside its group",
+        "passed on the nearer side by `rvo`, `sfm`, `orca` and `avocado`, walls round the object block what reaches "
+        "them; posts beside a free way hold no robot back under `sfm`. `unobstructed` linestrings count for `rvo` and "
+        "`sfm` as in 2.12, other `unobstructed` walls for none. Moving polygons stay discs, moving linestrings as in "
+        "2.12. `orca` also sees moving objects outside its group",
         "robots drove through walls, stayed metres away from them or stood before them, and closed rooms of "
         "linestrings blocked every direction",
     ),
@@ -290,6 +289,7 @@ FEATURES: dict[str, tuple[str, ...]] = {
 EXTENSIONS: dict[str, str] = {
     "bridges": "connections to other programs",
     "world.boundary": "walls at the edge of the world",
+    "entry.actuation": "dead time, lag, jerk and noise between a command and its execution",
     "world.seed": "default seed",
     "world.contacts": "contacts within a step can count as collisions",
     "world.integration": "exact arcs within a step instead of Euler's law",

@@ -26,11 +26,12 @@ enum class Stream : std::uint64_t {
   user,
   perturbation,
   policy,
-  task
+  task,
+  actuation
 };
-constexpr std::array<const char*, 12> kStreamNames = {"placement", "shape",        "goal",    "motion",
-                                                      "sensor",    "behavior",     "planner", "map",
-                                                      "user",      "perturbation", "policy",  "task"};
+constexpr std::array<const char*, 13> kStreamNames = {"placement", "shape",   "goal",     "motion", "sensor",
+                                                      "behavior",  "planner", "map",      "user",   "perturbation",
+                                                      "policy",    "task",    "actuation"};
 
 /// The stream of sensor number `index` of an object.
 inline std::uint64_t sensor_stream(int index) {

@@ -104,6 +104,8 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "no-turning": ("robot: {vel_max: [1, 0], vel_min: [-1, 0]}", "robot: {vel_max: [1, 1], vel_min: [-1, -1]}"),
     "target-roles-nobody": ("robot: {behavior: {name: rvo, target_roles: robot}}", "robot: {behavior: {name: rvo}}"),
     "jumps-through": ("robot: {vel_max: [8, 1], vel_min: [-8, -1], goal_threshold: 0.5}\nobstacle: {shape: {name: rectangle, length: 0.1, width: 4}, state: [5, 5, 0.7854]}", "robot: {vel_max: [1, 1]}\nobstacle: {shape: {name: rectangle, length: 0.1, width: 4}, state: [5, 5, 0.7854]}"),
+    "actuation-unused": ("robot: {kinematics: null, behavior: null, actuation: {delay: 0.1}}", "robot: {actuation: {delay: 0.1}}"),
+    "lag-twice": ("robot: {kinematics: {name: diff, tau: 0.1}, actuation: {lag: 0.2}}", "robot: {kinematics: {name: diff}, actuation: {lag: 0.2}}"),
     "coarse-steps": ("world: {step_time: 0.5}\nrobot: {vel_max: [0.3, 1.5], vel_min: [-0.3, -1.5]}", "world: {step_time: 0.5, integration: exact}\nrobot: {vel_max: [0.3, 1.5], vel_min: [-0.3, -1.5]}"),
     "crowd-stops": ("obstacle: {number: 6, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, distribution: {name: random}, behavior: {name: sfm, wander: true}}", "world: {collision_mode: unobstructed_obstacles}\nobstacle: {number: 6, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, distribution: {name: random}, behavior: {name: sfm, wander: true}}"),
     "unobstructed-robot": ("robot: {unobstructed: true}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0]}", "robot: {behavior: {name: dash}}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0], unobstructed: true}"),

@@ -276,9 +276,10 @@ GUIDES: dict[str, Guide] = {
         "under it. (unobstructed on shelves lets it through, but then nothing is tested; on the drone it does not "
         "help.) A side view with y as height is a drawing, not a flight: label it as such. Objects "
         "can appear at a time (appear_time: 5) or stand at their start until then (start_time: 5, for all to see); "
-        "nothing vanishes or is made during a run. perturb delays starts by chance. Doors and "
-        "walls that open at a time or on a signal do not exist; an object that slides back and forth is an obstacle "
-        "with kinematics omni and behavior {name: dash, loop: true}. No weather, slippery floors, speed zones, traffic "
+        "nothing vanishes or is made during a run. perturb delays starts by chance. A drive that answers its commands "
+        "late is actuation: {delay: 0.1, lag: 0.2}. Doors and walls that open at a time or on a signal do not exist; "
+        "an object that slides back and forth is an obstacle with kinematics omni and behavior {name: dash, loop: "
+        "true}. No weather, slippery floors, speed zones, traffic "
         "lights, right of way, priorities, batteries, radio, cameras or arms; sensors are planar lidars. gravity, "
         "friction and mass only affect pushing (collision_mode contact). Say what is not possible, and offer the "
         "closest alternative, labelled as such. (Speed limits are vel_min, vel_max and acce.)",

@@ -17,6 +17,7 @@ from irsim.lookup.schema_walk import COLOR, Node, alternatives, mappings, yaml_t
 from irsim.lookup.schema_walk import components as options_of
 from irsim.lookup.topics import lookup
 from irsim.options.registry import KINEMATICS, REGISTRIES
+from irsim.scenario.model.actuation import Actuation
 from irsim.scenario.model.zones import Zone
 from irsim.scenario.read import read
 
@@ -75,7 +76,10 @@ def _objects(source: _Source) -> str:
         f"obstacle with `kinematics` and `behavior` moves like a robot. {_STAR}"
     )
     pages_of = ", ".join(f"[{name}]({name}.md)" for name in kinds)
-    return f"{intro}\n\n{_keys(source, 'robot')}\n\nComponents: {pages_of}. {COLOR}"
+    order = " ".join((Actuation.__doc__ or "").split())
+    examples = "\n".join(f"- `actuation: {yaml_text(one)}`" for one in Actuation.schema_extra["examples"])
+    actuators = f"## `actuation`\n\n{order}\n\n{_keys(source, 'robot.actuation')}\n\n{examples}"
+    return f"{intro}\n\n{_keys(source, 'robot')}\n\nComponents: {pages_of}. {COLOR}\n\n{actuators}"
 
 
 def _kinematics(source: _Source) -> str:

@@ -204,7 +204,9 @@ def _type(root: Node, options: list[Node]) -> tuple[str, bool]:
         kind = option.get("type")
         if kind == "array" and isinstance(option.get("items"), dict):
             items = list(alternatives(root, option["items"]))
-            if {_digest(item) for item in items} & plain:
+            if "x-per" in option:
+                words.append(f"a list with one per {option['x-per']}")
+            elif {_digest(item) for item in items} & plain:
                 per_object = True
             else:
                 words.append(_list_type(root, option, items))

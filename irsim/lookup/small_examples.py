@@ -20,6 +20,14 @@ BETTER = ("arrive_mode", "avoid", "fov", "fov_radius", "fov_occlusion", "goal_th
 
 _VALUES: dict[str, Any] = {
     "acce": [0.5, 1.0],
+    "robot.actuation": {"delay": 0.1, "lag": 0.15},
+    "actuation.command_period": 0.2,
+    "actuation.dead_band": [0.02, 0.05],
+    "actuation.delay": [0.05, 0.1],
+    "actuation.jerk": [2.0, 10.0],
+    "actuation.lag": 0.15,
+    "actuation.noise": [0.01, 0.02],
+    "actuation.resolution": 0.05,
     "after_arrival": "freeze",
     "angle_std": 0.01,
     "angle_tolerance": 0.05,

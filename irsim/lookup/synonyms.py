@@ -88,6 +88,13 @@ EVERYDAY: dict[str, str] = {
     "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity"
     ", geschwindigkeit, velocidad, 速度",
     "robot.acce": "acceleration, acceleration limit, braking, brake, braking distance, stopping distance, deceleration",
+    "robot.actuation": "actuator, motor, latency, lag, command delay, control delay, input delay, reaction time, "
+    "response time, sluggish, slow to react, time constant, hardware effects",
+    "robot.actuation.delay": "dead time, transport delay, latency, command delay, control latency",
+    "robot.actuation.lag": "lag, first-order lag, time constant, inertia of the drive",
+    "robot.actuation.jerk": "jerk limit, smooth acceleration, s-curve",
+    "robot.actuation.dead_band": "deadband, dead zone, static friction, stiction",
+    "robot.actuation.command_period": "control rate, control frequency, zero-order hold",
     "robot.distribution": "random positions, random placement, random start, scatter, spread, placement",
     "robot.distribution.random": "random positions, random placement, random start, scatter",
     "robot.distribution.circle_crossing": "crowdnav, circle crossing, random angles of a circle, opposite goals",

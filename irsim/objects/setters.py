@@ -190,6 +190,7 @@ def set_velocity(view: SimObject, velocity: Any, init: bool) -> None:
         raise ValueError(f"the velocity of {view.name!r} is {view.vel_dim} numbers, not {velocity!r}")
     simulation, row = view._simulation, view.row
     simulation.set_control(row, values)
+    simulation.state.rest(row)
     if init:
         simulation.state.set_initial(row, pose=False, control=True)
 

@@ -102,11 +102,18 @@ class PerObject:
         kind: Kind of one value. ``value``: a single value or a vector. ``vector``: always a vector. ``number``: a
             number, so a list of numbers is one number per object. ``list``: a list of items. ``path``: a list of
             vectors.
+        per: What a list has one value for: each object of the entry, or each control.
     """
 
-    def __init__(self, item: Any, kind: Literal["value", "vector", "number", "list", "path"] = "value") -> None:
+    def __init__(
+        self,
+        item: Any,
+        kind: Literal["value", "vector", "number", "list", "path"] = "value",
+        per: Literal["object", "control"] = "object",
+    ) -> None:
         self.item = item
         self.kind = kind
+        self.per = per
         self._discriminate = _DISCRIMINATORS[kind]
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
@@ -118,6 +125,8 @@ class PerObject:
         union = any_of(handler(schema))
         if self.kind in _CONTAINED:
             union["anyOf"][-1]["contains"] = _CONTAINED[self.kind]
+        if self.per != "object":
+            union["anyOf"][-1]["x-per"] = self.per
         return union
 
 

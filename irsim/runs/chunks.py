@@ -72,7 +72,8 @@ def pack_chunk(
     ``pose_at`` (N, 3) of all objects; ``goal`` (K, N, 3), ``flags`` (K, N; 1 arrived, 2 collided, 4 stopped) and
     ``ranges`` (K, beams) with one row per change. ``piece.json`` has the ``first`` step and number of ``rows``, the
     indices of the ``movers``, the rows from which on each goal, flag and scan holds (``goal_rows``, ``flag_rows``,
-    ``scan_rows``, empty without scans), and the ``events``.
+    ``scan_rows``, empty without scans), and the ``events``. If some of the movers have actuators, their commands are
+    in ``command`` (T, number of them, C), and ``piece.json`` has their indices (``commanded``).
 
     Args:
         log: The trace since the last piece.
@@ -80,7 +81,7 @@ def pack_chunk(
         pose: (N, 3) present poses of all objects.
         events: Events since the last piece.
     """
-    about = {
+    about: dict[str, Any] = {
         "first": log.first,
         "rows": log.rows,
         "movers": movers,
@@ -97,6 +98,8 @@ def pack_chunk(
         "flags": log.flags,
         "ranges": log.ranges,
     }
+    if log.commanded:
+        about["commanded"], arrays["command"] = log.commanded, log.command
     entries = [
         (f"{name}.npy", _head(array), array.data.cast("B") if array.size else b"") for name, array in arrays.items()
     ]
@@ -143,7 +146,7 @@ def load_chunk(path: Path, layout: Layout, objects: Sequence[int] | None = None,
     """
     with _as_run_error(path), _opened(path) as archive:
         about = read_json(archive.read(_ABOUT), most_bytes=_MAX_BYTES)
-        names = [*_ARRAYS, "ranges"] if scans else _ARRAYS
+        names = [*_ARRAYS, *(["ranges"] if scans else []), *(["command"] if "commanded" in about else [])]
         arrays = {name: read_array(archive, archive.getinfo(f"{name}.npy"), _KINDS) for name in names}
         for array in arrays.values():
             _check_values(array)
@@ -197,6 +200,14 @@ def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layou
     pose[:, targets] = arrays["pose"][:, sources]
     control = np.zeros((rows, len(chosen), 3))
     control[:, targets, :columns] = arrays["control"][:, sources]
+    command = None
+    if "command" in arrays:
+        commanded = [int(row) for row in about["commanded"]]
+        _expect(arrays["command"], (rows, len(commanded), columns))
+        command = np.full((rows, count, 3), np.nan)
+        command[:, commanded, :columns] = arrays["command"]
+        command[:, commanded, columns:] = 0.0
+        command = command[:, chosen]
     names = tuple(layout.names[row] for row in chosen)
     flags = _expand(about["flag_rows"], arrays["flags"], rows, (count,), chosen).astype(np.uint8)
     ranges: dict[str, NDArray[np.float32]] = {}
@@ -213,6 +224,7 @@ def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layou
         time=step.astype(np.float64) * layout.step_time,
         pose=pose,
         control=control,
+        command=command,
         goal=_expand(about["goal_rows"], arrays["goal"], rows, (count, 3), chosen),
         arrived=(flags & _BITS["arrived"]).astype(bool),
         collided=(flags & _BITS["collided"]).astype(bool),

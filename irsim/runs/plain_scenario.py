@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["plain_scenario", "with_options"]
 
-_MODELS = ("kinematics", "behavior", "group_behavior", "plot")
+_MODELS = ("kinematics", "behavior", "group_behavior", "plot", "actuation")
 _EACH = ("id", "name", "group", "group_name", "path", "index", "shape")
 _LIKE = tuple(field.name for field in fields(ObjectRecord) if field.name not in (*_EACH, "state", "goals"))
 _each, _like = attrgetter(*_EACH), attrgetter(*_LIKE)

@@ -14,10 +14,12 @@ from irsim.common.outline import Outline, part_of
 from irsim.components.kinematics._handler import handler_class
 from irsim.components.options import BehaviorOptions
 from irsim.options.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
+from irsim.scenario.model.actuation import MOST_CONTROLS, PER_CONTROL, per_control
 from irsim.scenario.resolve.kernels import Kernels, kernels_of, parts_of, placement_kernel
 from irsim.simulation.fog import build_fog
 
 if TYPE_CHECKING:
+    from irsim.scenario.model.actuation import Actuation
     from irsim.scenario.resolve.resolved import ObjectRecord, Placement, ResolvedScenario, Variation
 
 __all__ = [
@@ -152,10 +154,18 @@ def build_object(
         driven=record.kinematics is not None,
         start_step=steps_until(max(record.start_time, record.appear_time), step_time),
         appear_step=steps_until(record.appear_time, step_time),
+        actuation=None if record.actuation is None else _actuation(record.actuation),
         vanish_step=0 if record.vanish_time is None else 1 + steps_within(record.vanish_time, step_time),
         reflectivity=record.reflectivity,
         material=record.material,
     )
+
+
+def _actuation(options: Actuation) -> core.Actuation:
+    """Build the actuators of an object."""
+    values = {key: per_control(getattr(options, key), MOST_CONTROLS) for key in PER_CONTROL if key != "jerk"}
+    jerk = per_control(options.jerk, MOST_CONTROLS, math.inf)
+    return core.Actuation(command_period=options.command_period, jerk=jerk, **values)
 
 
 def _keeps(placement: Placement, row: dict[int, int]) -> dict[str, Any]:

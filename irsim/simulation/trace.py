@@ -74,6 +74,8 @@ class Trace:
             run it has single precision.
         goal: (T, N, 3) present goal x, y [m], heading [rad]; NaN without a goal.
         arrived, collided, stopped: (T, N) flags.
+        command: (T, N, 3) what was commanded in the step that led to the row, of objects with ``actuation``; NaN for
+            others. None if no object has any, and in traces that are not of a recorded run.
         ranges: (T, B) ranges [m] of each sensor, infinite for a beam that hit nothing. The keys are ``<object
             name>/<number of the sensor among the native sensors of the object>``. Empty if scans were not recorded; a
             recorded run has fewer than T rows if it was too large to store all of them.
@@ -92,6 +94,7 @@ class Trace:
     ranges: dict[str, NDArray[np.float32]]
     names: tuple[str, ...]
     step_time: float
+    command: Floats | None = None
 
     def __len__(self) -> int:
         return len(self.step)
@@ -187,14 +190,17 @@ def join_traces(parts: Sequence[Trace]) -> Trace:
     first = parts[0]
     stacked = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _BY_ROW}
     ranges = {key: np.concatenate([part.ranges[key] for part in parts]) for key in first.ranges}
-    return Trace(**stacked, ranges=ranges, names=first.names, step_time=first.step_time)
+    commands = [part.command for part in parts if part.command is not None]
+    command = np.concatenate(commands) if len(commands) == len(parts) else None
+    return Trace(**stacked, ranges=ranges, names=first.names, step_time=first.step_time, command=command)
 
 
 def cut_trace(trace: Trace, rows: slice) -> Trace:
     """Return some rows of a trace as views; its ranges have fewer rows where scans were not recorded to the end."""
     cut = {name: getattr(trace, name)[rows] for name in _BY_ROW}
     ranges = {key: block[rows] for key, block in trace.ranges.items()}
-    return Trace(**cut, ranges=ranges, names=trace.names, step_time=trace.step_time)
+    command = None if trace.command is None else trace.command[rows]
+    return Trace(**cut, ranges=ranges, names=trace.names, step_time=trace.step_time, command=command)
 
 
 def record_rollout(simulation: Simulation, steps: int, *, until_done: bool) -> Rollout:

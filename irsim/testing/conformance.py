@@ -72,6 +72,7 @@ def scenario_with(
     shape: str = "{name: circle, radius: 0.2}",
     behavior: str = "{name: dash}",
     sensor: str | None = None,
+    actuation: str | None = None,
     group: bool = False,
     turn: float = 0.0,
     shift: tuple[float, float] = (0.0, 0.0),
@@ -84,6 +85,7 @@ def scenario_with(
         shape: Shape mapping as YAML.
         behavior: Behavior mapping as YAML.
         sensor: Sensor mapping as YAML.
+        actuation: Mapping of `actuation` as YAML.
         group: Use the behavior as ``group_behavior``.
         turn: Angle by which the whole scene is rotated about the origin [rad].
         shift: Translation of the scene after the rotation [m].
@@ -107,6 +109,8 @@ def scenario_with(
         ]
         if sensor is not None:
             lines.append(f"    sensors: [{sensor}]")
+        if actuation is not None:
+            lines.append(f"    actuation: {actuation}")
     box, disc = _moved(5.0, 3.0, turn, shift), _moved(3.5, 6.0, turn, shift)
     lines += [
         "obstacle:",

@@ -261,5 +261,5 @@ def test_streams_have_names() -> None:
     assert sorted(core.STREAMS.values()) == list(range(len(core.STREAMS)))
     assert set(core.STREAMS) == {
         "placement", "shape", "goal", "motion", "sensor", "behavior", "planner", "map", "user",
-        "perturbation", "policy", "task",
+        "perturbation", "policy", "task", "actuation",
     }  # fmt: skip

@@ -123,6 +123,7 @@ def robot(**overrides: Any) -> core.ObjectSpec:
         "vanish_step": 0,
         "reflectivity": 0.8,
         "material": "matt",
+        "actuation": None,
         "target_roles": 0,
         "behavior": DASH,
         "grouped": False,

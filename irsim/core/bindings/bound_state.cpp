@@ -41,6 +41,7 @@ void BoundState::expose() {
   command = view<double>(state.command.memory, {rows, 3});
   commanded = view<double>(state.commanded.memory, {rows, 2});
   drive = view<double>(state.drive.memory, {rows, 3});
+  actuated = view<double>(state.actuated.memory, {state.actuated.size, sizeof(Actuated) / sizeof(double)});
   contact_time = view<double>(state.contact_time.memory, {rows});
   air_time = view<double>(state.air_time.memory, {rows});
   touching = view<std::uint8_t>(state.touching.memory, {rows});

@@ -64,6 +64,13 @@ void bind_log(nb::module_& m) {
                      const std::size_t columns = s.columns;
                      return column_view<float>(s.control, {static_cast<std::size_t>(s.rows), s.movers.size(), columns});
                    })
+      .def_ro("commanded", &Log::commanded)
+      .def_prop_ro("command",
+                   [](const Log& s) {
+                     const std::size_t columns = s.columns;
+                     return column_view<float>(s.command,
+                                               {static_cast<std::size_t>(s.rows), s.commanded.size(), columns});
+                   })
       .def_prop_ro("goal_rows",
                    [](const Log& s) { return column_view<std::int64_t>(s.goal_rows, {s.goal_rows.size()}); })
       .def_prop_ro("goal",

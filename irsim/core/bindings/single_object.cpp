@@ -72,7 +72,8 @@ bool impose_row(const World& world, BoundState& bound, int row, const Numbers& c
   constexpr double kRounding = 1e-9;
   State& state = bound.of(world);
   bound.check_row(row);
-  const Vec3 &now = state.control[row], &acce = state.acce[row];
+  const bool actuated = world.has_actuators[row % world.objects];
+  const Vec3 &now = actuated ? state.actuated[row].setpoint : state.control[row], &acce = state.acce[row];
   bool cut = false;
   for (int c = 0; c < 3 && c < static_cast<int>(control.size()); ++c) {
     const double wanted = control[static_cast<std::size_t>(c)], change = acce[c] * world.step_time;

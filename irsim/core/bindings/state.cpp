@@ -185,6 +185,7 @@ void bind_state(nb::module_& m) {
       .def_ro("command", &S::command)
       .def_ro("commanded", &S::commanded)
       .def_ro("drive", &S::drive)
+      .def_ro("actuated", &S::actuated)
       .def_ro("contact_time", &S::contact_time)
       .def_ro("air_time", &S::air_time)
       .def_ro("touching", &S::touching)
@@ -287,6 +288,14 @@ void bind_state(nb::module_& m) {
             std::vector<double> out;
             for (const Vec2& p : path) out.insert(out.end(), {p.x, p.y});
             return own(std::move(out), {path.size(), 2});
+          },
+          nb::arg("row"))
+      .def(
+          "rest",
+          [](S& self, int row) {
+            self.check_row(row);
+            if (self.world->has_actuators[row % self.world->objects])
+              rest_at(*self.world, self.state, row, self.state.control[row]);
           },
           nb::arg("row"))
       .def("opinions", &opinions_of, nb::arg("row"))

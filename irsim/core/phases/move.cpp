@@ -6,13 +6,27 @@
 
 namespace irsim {
 
+namespace {
+
+/// The executed control of a moving object whose commands pass through actuators. Without a command it is told to stop.
+void limit_actuated(const World& world, State& state, int row) {
+  const bool waits = state.waits(row), commanded = world.behaves[row % world.objects] || state.given[row];
+  if (waits) rest_at(world, state, row, {});
+  const Vec3 u = waits ? Vec3{} : actuate(world, state, row, commanded ? state.command[row] : Vec3{});
+  state.control[row] = world.collision_mode == kContact ? respond(world, state, row, u) : u;
+}
+
+}  // namespace
+
 void limit(const World& world, State& state, int w, int object) {
   const int row = w * world.objects + object;
   Vec3& u = state.control[row];
   if (world.is_static[object] || state.stopped[row]) {
     u = {};
+    if (world.has_actuators[object]) rest_at(world, state, row, {});
     return;
   }
+  if (world.has_actuators[object]) return limit_actuated(world, state, row);
   if (state.waits(row)) {
     u = world.collision_mode == kContact ? respond(world, state, row, {}) : Vec3{};
     return;

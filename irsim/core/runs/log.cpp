@@ -41,7 +41,11 @@ Log::Log(const World& world, std::vector<int> movers_, int columns_, bool scans_
       columns(columns_),
       scans(scans_),
       beams(scans_ ? world.beams_per_world : 0),
-      flags_now_(world.objects) {}
+      flags_now_(world.objects) {
+  for (const int i : movers) {
+    if (world.has_actuators[i]) commanded.push_back(i);
+  }
+}
 
 void Log::add(const State& state) {
   if (rows == 0) first = state.count[0];
@@ -50,6 +54,12 @@ void Log::add(const State& state) {
   for (const int i : movers) {
     poses = std::copy_n(&state.pose[i].x, 3, poses);
     for (int c = 0; c < columns; ++c) *controls++ = static_cast<float>(state.control[i].value[c]);
+  }
+  if (!commanded.empty()) {
+    float* commands = command.add(columns * commanded.size());
+    for (const int i : commanded) {
+      for (int c = 0; c < columns; ++c) *commands++ = static_cast<float>(state.command[i].value[c]);
+    }
   }
   add_if_changed(goal_rows, goal, rows, state.goal.data, objects);
   for (int i = 0; i < objects; ++i) {
@@ -73,7 +83,7 @@ void Log::add_scan(const State& state) {
 
 void Log::clear() {
   rows = 0;
-  pose.clear(), control.clear(), goal.clear(), flags.clear(), ranges.clear();
+  pose.clear(), control.clear(), command.clear(), goal.clear(), flags.clear(), ranges.clear();
   goal_rows.clear(), flag_rows.clear(), scan_rows.clear();
 }
 

@@ -58,20 +58,24 @@ struct Log {
   /// Remove all rows. The next row has goals, flags and scans.
   void clear();
 
-  std::vector<int> movers;  // objects whose pose and control are recorded
-  int objects, columns;     // `columns`: recorded numbers of each control
+  std::vector<int> movers;     // objects whose pose and control are recorded
+  std::vector<int> commanded;  // those of them whose commands pass through actuators, and are recorded, too
+  int objects, columns;        // `columns`: recorded numbers of each control
   bool scans;
   std::size_t beams;
 
   std::int64_t first = 0, rows = 0;  // step of the first row, number of rows
   Column<double> pose;               // (rows, movers, 3)
   Column<float> control;             // (rows, movers, columns)
+  Column<float> command;             // (rows, commanded, columns)
   Column<std::int64_t> goal_rows, flag_rows, scan_rows;
   Column<Goal> goal;           // (goal_rows, N)
   Column<std::uint8_t> flags;  // (flag_rows, N): 1 arrived, 2 collided, 4 stopped
   Column<float> ranges;        // (scan_rows, beams), infinite without a valid hit
 
-  std::size_t bytes() const { return 8 * (pose.size() + 3 * goal.size()) + 4 * (control.size() + ranges.size()); }
+  std::size_t bytes() const {
+    return 8 * (pose.size() + 3 * goal.size()) + 4 * (control.size() + command.size() + ranges.size());
+  }
 
  private:
   /// Add the ranges of all beams, unless they equal the last ones bit for bit.

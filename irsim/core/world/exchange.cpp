@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "phases.hpp"
+#include "world/spec.hpp"
 
 namespace irsim {
 namespace {
@@ -45,6 +46,18 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   std::copy_n(&from.initial_extra[old_e], both, &to.initial_extra[e]);
   to.sync_goal(row);
   to.overshot[row] = from.overshot[old_row];
+}
+
+/// Copy what the actuators of a row keep, and the commands that wait in their queue.
+void copy_actuators(const World& world, State& to, int row, const Origin& origin) {
+  if (!world.has_actuators[row]) return;
+  const World& world_before = *origin.world;
+  const bool alike = world_before.has_actuators[origin.object] &&
+                     same(*world.specs[row].actuation, *world_before.specs[origin.object].actuation);
+  if (!alike || origin.state->count[0] != to.count[0]) return rest_at(world, to, row, to.control[row]);
+  const Actuators &now = world.actuators[row], &before = world_before.actuators[origin.object];
+  to.actuated[row] = origin.state->actuated[origin.object];
+  std::copy_n(origin.state->queue.data() + before.first, now.slots, to.queue.data() + now.first);
 }
 
 /// The recorded history of a row, with the given number of extra rows.
@@ -158,6 +171,7 @@ void continue_from(const World& world, State& state, const World& world_before, 
     const Origin& origin = origins[i];
     if (origin.state == &before) new_row[origin.object] = i;
     copy_row(state, i, *origin.state, origin.object);
+    copy_actuators(world, state, i, origin);
     if (origin.state == &before && !before.opinions.empty() && !state.opinions.empty()) {
       state.opinions[i] = before.opinions[origin.object];
     }

@@ -9,6 +9,7 @@
 #include "routes/route.hpp"
 #include "sensors.gen.hpp"
 #include "shapes.gen.hpp"
+#include "world/actuation.hpp"
 
 namespace irsim {
 
@@ -47,6 +48,7 @@ struct ObjectSpec {
   std::int64_t vanish_step;                          // step in which it leaves the world; 0: never
   double reflectivity;                               // share of the light of a lidar that its surface throws back
   Material material;
+  std::optional<Actuation> actuation;  // without it commands reach the drive as they are
 
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
@@ -64,7 +66,8 @@ struct ObjectSpec {
         field("friction", &S::friction), field("inertia", &S::inertia), field("restitution", &S::restitution),
         field("tau", &S::tau), field("driven", &S::driven), field("start_step", &S::start_step),
         field("appear_step", &S::appear_step), field("vanish_step", &S::vanish_step),
-        field("reflectivity", &S::reflectivity), choice("material", &S::material, "matt", "glass", "mirror"));
+        field("reflectivity", &S::reflectivity), choice("material", &S::material, "matt", "glass", "mirror"),
+        field("actuation", &S::actuation));
   }
 };
 

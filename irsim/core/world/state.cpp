@@ -77,6 +77,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       command(rows),
       commanded(rows),
       drive(rows),
+      actuated(world.actuators.empty() ? 0 : rows),
       contact_time(rows),
       air_time(rows),
       given(rows),
@@ -113,6 +114,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       variant(worlds, -1),
       seed(worlds),
       failed_placement(worlds, -1),
+      queue(worlds * world.queue_slots),
       direction(rows),
       direction_of(rows, kNone),
       goals(rows),
@@ -184,6 +186,7 @@ void restart_row(const World& world, State& state, int row) {
   state.twist[row] = state.command[row] = {};
   state.commanded[row] = {};
   state.drive[row] = world.dynamics[i].driven ? state.control[row] : Vec3{};
+  if (world.has_actuators[i]) rest_at(world, state, row, state.control[row]);
   state.contact_time[row] = state.air_time[row] = 0.0;
   state.touching[row] = 0;
   state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;

@@ -12,6 +12,7 @@
 #include "random.hpp"
 #include "routes/route.hpp"
 #include "runs/log.hpp"
+#include "world/actuation.hpp"
 #include "world/array.hpp"
 #include "world/scene.hpp"
 #include "world/workspace.hpp"
@@ -51,6 +52,7 @@ struct State {
   Array<Vec3> control, twist, command;
   Array<Vec2> commanded;                 // velocity that the caller last asked a row to follow, world frame [m/s]
   Array<Vec3> drive;                     // controls of the drives before contacts change them, command frame
+  Array<Actuated> actuated;              // (R,), empty if no object has actuators
   Array<double> contact_time, air_time;  // time for which an object has touched something, or nothing [s]
   Array<std::uint8_t> given, arrived, collided, stopped;
   Array<std::uint8_t> touching;  // bit 0: in contact in the last step, bit 1: in the one before
@@ -82,6 +84,7 @@ struct State {
   Array<std::uint64_t> seed;
   Array<std::int32_t> failed_placement;
 
+  std::vector<Vec3> queue;                // commands that wait for their dead time, see `Actuators::first`
   std::vector<Vec2> direction;            // (R,) cosine and sine of `direction_of`
   std::vector<double> direction_of;       // (R,) heading for which `direction` was computed [rad]
   std::vector<GoalQueue> goals;           // (R,)

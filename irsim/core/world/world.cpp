@@ -112,6 +112,23 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
   }
 }
 
+/// The actuators of an object; queues of a world follow each other.
+Actuators make_actuators(World& world, const ObjectSpec& spec) {
+  Actuators made;
+  made.options = *spec.actuation;
+  made.period = spec.actuation->command_period / world.step_time;
+  double longest = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    made.delay[c] = spec.actuation->delay[c] / world.step_time;
+    longest = std::max(longest, made.delay[c]);
+    made.noisy = made.noisy || spec.actuation->noise[c] > 0.0;
+  }
+  made.first = world.queue_slots;
+  if (longest > 0.0) made.slots = 2 + static_cast<std::int64_t>(std::ceil(longest));
+  world.queue_slots += static_cast<std::size_t>(made.slots);
+  return made;
+}
+
 void check(const ObjectSpec& spec) {
   if (spec.parts.empty()) throw std::invalid_argument("an object needs at least one part");
   if (spec.angle_range.size() != 2) throw std::invalid_argument("angle_range must have two numbers");
@@ -221,8 +238,13 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     if (s.appear_step > 0) latecomers.push_back(i);
     if (s.vanish_step > 0) leavers.push_back(i);
     random_statics = random_statics || (s.is_static && s.appear_step > 0);
+    has_actuators.push_back(s.actuation && s.driven && !s.is_static && !unstoppable.back());
     add_to_group(*this, i, s);
     add_scans(*this, i, s);
+  }
+  if (std::any_of(has_actuators.begin(), has_actuators.end(), [](std::uint8_t has) { return has != 0; })) {
+    for (int i = 0; i < objects; ++i)
+      actuators.push_back(has_actuators[i] ? make_actuators(*this, specs[i]) : Actuators{});
   }
   find_members(*this);
   if (fog) add_fog_beams(*this);

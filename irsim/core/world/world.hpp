@@ -12,6 +12,7 @@
 #include "drives.hpp"
 #include "geometry/vec.hpp"
 #include "sensing/fog.hpp"
+#include "world/actuation.hpp"
 #include "world/scene.hpp"
 #include "world/variation.hpp"
 #include "world/zones.hpp"
@@ -91,6 +92,8 @@ struct World {
   std::vector<int> number;  // id in draws and events; equal to the index until objects are removed
   std::vector<Drive> drive;
   std::vector<BodyDynamics> dynamics;
+  std::vector<std::uint8_t> has_actuators;
+  std::vector<Actuators> actuators;  // empty if no object has any
   std::vector<Vec3> vel_min, vel_max, acce;
   std::vector<double> angle_low, angle_high, goal_threshold;
   std::vector<Pose> range_low, range_high;
@@ -108,6 +111,7 @@ struct World {
   std::vector<BehaviorGroup> behaviors;
   std::vector<Scan> scans;
   int beams_per_world = 0, velocities_per_world = 0;
+  std::size_t queue_slots = 0;  // commands that wait for their dead time, of all objects of a world
   std::optional<Fog> fog;
   std::vector<Mount> fog_beams;  // beams of each view of the fog; empty for views without occlusion
   std::vector<Placement> placements;

@@ -236,6 +236,19 @@ OBJECTS: dict[str, Code] = {
         "short, timeHorizonObst: 1.8 leaves time to decide. `footprint_orca` stops in time with any; `follow` "
         "leads it round large things.",
     ),
+    "actuation-unused": Code(
+        "actuation without effect",
+        "'actuation' is what happens to commands before the drive executes them. Objects without a drive, static ones, "
+        "obstacles that replay a recording and worlds with 'step_mode: external' have no commands, and a "
+        "'command_period' of at most 'step_time' holds nothing. Example: actuation on an object without kinematics; "
+        "remove it.",
+    ),
+    "lag-twice": Code(
+        "a lag that is given twice",
+        "'lag' under 'actuation' and the older 'tau' of the kinematics, or 'world.drive_tau' ('collision_mode: "
+        "contact'), are the same thing: a first-order lag of the drive. Keep one of them; 'tau: 0' in the kinematics "
+        "takes an object out of 'world.drive_tau'.",
+    ),
     "coarse-steps": Code(
         "steps that are long for the size of a body",
         "A body that moves by more than half of its smallest extent in a step, or turns by more than 0.5 rad (its rim "

@@ -159,6 +159,9 @@ def _check(
         raise task_error(where, what, f"give at most {len(records)}, or raise `number` of the entry in the scenario")
     if quantity == "latency" and any(record not in selection.learners for record in records):
         raise task_error(where, "only robots that learn get actions", "name learners, such as `learners`")
+    if quantity == "latency" and any(record.actuation is not None and record.actuation.has_delay for record in records):
+        what = f"a delay of {clean(word)!r} is given twice: the scenario has `actuation: {{delay: ...}}`, too"
+        raise task_error(where, what, "remove one of them: latency is a number of steps, delay a time in seconds")
     if quantity == "speed" and not all(record.kinematics is not None and not record.static for record in records):
         raise task_error(where, f"{clean(word)!r} names objects that cannot move", "name objects with a drive")
     if quantity == "acceleration" and not any(np.isfinite(record.acce).any() for record in records):

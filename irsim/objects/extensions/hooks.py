@@ -101,6 +101,8 @@ def limited_control(view: SimObject, velocity: Any) -> Floats:
     else:
         wanted = simulation.decide_alone(view)
     now, (least, most) = simulation.control_of(row, view.vel_dim), simulation.limits(row)
+    if view.record.actuation is not None:  # its actuators limit changes, after the dead time
+        return np.minimum(np.maximum(wanted, least), most)[:, None]
     change = np.asarray(view.record.acce) * simulation.scenario.world.step_time
     low, high = np.maximum(least, now - change), np.minimum(most, now + change)
     control: Floats = np.minimum(np.maximum(wanted, low), high)[:, None]
@@ -173,7 +175,7 @@ class Hooks:
         self.stepping: set[int] = set()
         self.decided: dict[int, Floats] = {}
         self._slots: dict[int, Floats | None] = {}
-        self._before: dict[int, tuple[Floats, Floats, Floats]] = {}
+        self._before: dict[int, tuple[Floats, Floats, Floats, Floats]] = {}
 
     def add(self, view: Any) -> None:
         """Call the overridden methods of this object, too."""
@@ -226,7 +228,8 @@ class Hooks:
             if own & {"step", "mid_process"}:
                 size = view.vel_dim
                 control, drive = simulation.control_of(row, size).copy(), simulation.drive_of(row, size).copy()
-                self._before[row] = simulation.row_state(row, view.state_dim), control, drive
+                own_actuators = simulation.state.actuated[row : row + 1].copy()
+                self._before[row] = simulation.row_state(row, view.state_dim), control, drive, own_actuators
 
     def after_motion(self) -> None:
         """Call the overridden ``step``, ``mid_process`` and ``post_process``."""
@@ -237,10 +240,11 @@ class Hooks:
                 continue
             if "step" in own:
                 if row in self._before:
-                    state, control, drive = self._before[row]
+                    state, control, drive, own_actuators = self._before[row]
                     simulation.set_row_state(row, state)
                     simulation.set_control(row, control)
                     simulation.drive_of(row, view.vel_dim)[:] = drive
+                    simulation.state.actuated[row : row + 1] = own_actuators
                 self.stepping.add(row)
                 try:
                     view.step(self._slots.get(row), False)

@@ -159,12 +159,16 @@ def compare_limits(artifact: Artifact, report: Report) -> None:
     if artifact.world.collision_mode == "contact":
         report.end("contacts change the controls of bodies that push each other")
         return
-    unknown = 0
+    unknown, noisy = 0, 0
     for row, body in enumerate(artifact.bodies):
         if body.drive is None or body.options.static:
             continue
         if body.drive not in _DRIVES:
             unknown += 1
+            continue
+        actuation = body.options.actuation
+        if actuation is not None and any(actuation.of("noise")):
+            noisy += 1
             continue
         control = artifact.control[:, row]
         low, high, acce = (np.array(getattr(body.drawn, key)) for key in ("vel_min", "vel_max", "acce"))
@@ -173,6 +177,8 @@ def compare_limits(artifact: Artifact, report: Report) -> None:
         with np.errstate(invalid="ignore"):
             change = np.abs(np.diff(control, axis=0))
             most = acce * artifact.step_time * (1 + _SHARE) + slack
+            if actuation is not None:  # a control that overcomes static friction begins with this
+                most = most + np.array(actuation.of("dead_band"))
         fast = ((control < low - slack) | (control > high + slack))[1:, :count]
         sudden = (change > most)[:, :count] & ~artifact.stopped[:-1, row, None]
         report.compared(2 * fast.size)
@@ -192,4 +198,5 @@ def compare_limits(artifact: Artifact, report: Report) -> None:
                     recomputed=limit,
                     tolerance=float(slack),
                 )
-    report.end(f"{unknown} left out: has a drive of its own" if unknown else "")
+    left_out = {"has a drive of its own": unknown, "has noise in its actuation": noisy}
+    report.end("; ".join(f"{count} left out: {why}" for why, count in left_out.items() if count))

@@ -41,6 +41,21 @@ class WorldFacts(BaseModel):
     after_arrival: Name | None = None
 
 
+PerControl = Finite | Annotated[list[Finite], Field(max_length=64)]
+
+
+class ActuationFacts(BaseModel):
+    """What makes executed controls differ from controls within the limits."""
+
+    dead_band: PerControl = 0.0
+    noise: PerControl = 0.0
+
+    def of(self, key: Literal["dead_band", "noise"]) -> list[float]:
+        """(3,) the value for each control."""
+        value: float | list[float] = getattr(self, key)
+        return ([*value, 0.0, 0.0, 0.0] if isinstance(value, list) else [value] * 3)[:3]
+
+
 class Options(BaseModel):
     """Facts that objects may share."""
 
@@ -55,6 +70,7 @@ class Options(BaseModel):
     wander: bool = False
     loop: bool = False
     wheelbase: float | None = None
+    actuation: ActuationFacts | None = None
     vel_dim: Annotated[int, Field(ge=0, le=3)] = 2
     appear_time: float = 0.0
     vanish_time: float | None = None

@@ -34,9 +34,9 @@ KEY_CODES = frozenset({"unknown-key", "duplicate-key"})
 """Codes whose findings point at a key rather than at its value."""
 
 _FAMILIES = (
-    "world", "magnitude", "names", "zones", "kinematics", "shapes", "goals", "outside_world", "bridges", "placement",
-    "overlap", "behaviors", "regions", "groups", "motion", "tunneling", "step_size", "symmetry", "braking", "sensors",
-    "units", "files", "unsupported",
+    "world", "magnitude", "names", "zones", "kinematics", "actuation", "shapes", "goals", "outside_world", "bridges",
+    "placement", "overlap", "behaviors", "regions", "groups", "motion", "tunneling", "step_size", "symmetry", "braking",
+    "sensors", "units", "files", "unsupported",
 )  # fmt: skip
 """Modules of this package, in the order of their findings."""
 

@@ -19,6 +19,7 @@ from irsim.options.registry import (
 )
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, error
+from irsim.scenario.model.actuation import MOST_CONTROLS
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -51,6 +52,8 @@ def _unsimulated_features(context: Context) -> Iterator[tuple[Path, str]]:
             local: Any = getattr(options, "local", None)
             if options.name == "follow" and not _has_kernel(local):
                 yield (*context.entry_path(record, key), "local"), f"following a path with '{local.name}'"
+        if record.actuation is not None and record.vel_dim > MOST_CONTROLS:
+            yield context.entry_path(record, "actuation"), f"actuation of more than {MOST_CONTROLS} controls"
         for index, sensor in enumerate(record.sensors):
             name: str = getattr(sensor, "name", "")
             if not _is_simulated(SENSORS, name):

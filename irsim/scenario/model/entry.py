@@ -21,6 +21,7 @@ from irsim.options.registry import (
 from irsim.options.selection import Select
 from irsim.options.units import Bool, Fraction, Integer, Meters, Number, Seconds, SpanAngle
 from irsim.options.vectors import Component, OrNull, PerObject, Pose, Range
+from irsim.scenario.model.actuation import Actuation
 from irsim.scenario.model.plot import ObjectPlot
 
 __all__ = ["Entry"]
@@ -72,6 +73,8 @@ class Entry(Options):
         "max_speed": "vel_max",
         "max_velocity": "vel_max",
         "acceleration": "acce",
+        "actuator": "actuation",
+        "actuators": "actuation",
         "tolerance": "goal_threshold",
         "goal_tolerance": "goal_threshold",
         "xy_goal_tolerance": "goal_threshold",
@@ -151,6 +154,10 @@ class Entry(Options):
     """
     acce: Annotated[Any, PerObject(Rates | None, "vector")] = None
     """Largest change of each control component per second; null is unlimited."""
+    actuation: Annotated[Any, PerObject(Actuation | None)] = None
+    """What happens to commands before the drive executes them, in this order: `command_period`, `delay`, `resolution`,
+    limits with `jerk`, `lag`, `dead_band`, `noise`. Null executes them at once, within `vel_min`, `vel_max` and `acce`.
+    """
     angle_range: Annotated[Any, PerObject(Range | None, "vector")] = None
     """Interval of the heading, one turn wide; null is [-π, π]."""
     goal_threshold: Annotated[Meters, Field(ge=0)] = 0.1

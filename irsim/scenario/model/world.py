@@ -204,7 +204,7 @@ class WorldModel(Options):
     restitution: Fraction = 0.0
     """Default coefficient of restitution of objects, for `collision_mode: contact`."""
     drive_tau: Annotated[Seconds, Field(ge=0)] = 0.0
-    """Default lag of the drives, for `collision_mode: contact`."""
+    """Default lag of the drives, for `collision_mode: contact`; `lag` under `actuation` works in every mode."""
     status: Annotated[Text, OrNull("None")] = "None"
     """Label shown before the first step."""
     plot: Annotated[WorldPlot, OrNull({})] = WorldPlot()

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from irsim.components.maps._grid import MapGrid
     from irsim.diagnostics.diagnostic import Path
+    from irsim.scenario.model.actuation import Actuation
     from irsim.scenario.model.scenario import Gui, ObjectPlot, WorldModel
 
 
@@ -104,6 +105,7 @@ class ObjectRecord:
     inertia: float | None
     restitution: float
     drive_tau: float  # effective: kinematics first, then world
+    actuation: Actuation | None = None
     tags: tuple[str, ...] = ()
     watches: bool = False  # whether `fov` is written; else the field of view is its lidar's
     joined: bool = True  # whether it follows the behavior of its group
@@ -331,6 +333,7 @@ def _of_object(record: ObjectRecord) -> list[str]:
         "shapes": any(getattr(part, "random_shape", False) for part in parts),
         "wander goals": record.wander and not record.static,
         "motion noise": getattr(drive, "noise", False) and not record.static,
+        "actuation noise": record.actuation is not None and record.actuation.is_noisy and not record.static,
         "sensor noise": any(
             getattr(sensor, "noise", False) or getattr(sensor, "velocity_noise_std", 0.0) for sensor in record.sensors
         ),

@@ -1,0 +1,112 @@
+"""Checks actuators: values per control, and keys that are given twice or have no effect."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from irsim.diagnostics.diagnostic import Edit
+from irsim.scenario.checks._context import Context, distinct
+from irsim.scenario.messages.findings import Finding, error, hint, warning
+from irsim.scenario.model.actuation import PER_CONTROL, Actuation, per_control
+from irsim.scenario.resolve.resolved import ObjectRecord
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """Check all objects; one finding per path and code."""
+    yield from distinct(finding for record in context.entry_objects for finding in _of_object(context, record))
+
+
+def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    options = record.actuation
+    if options is None:
+        return
+    path = context.entry_path(record, "actuation")
+    if (why := _why_unused(context, record)) is not None:
+        yield warning(
+            "actuation-unused",
+            path,
+            f"'{record.name}' {why}, so its actuation has no effect",
+            fix="remove 'actuation'",
+            edit=Edit("remove", path),
+        )
+        return
+    wrong = False
+    for key in PER_CONTROL:
+        value = getattr(options, key)
+        if isinstance(value, list) and len(value) != record.vel_dim:
+            wrong = True
+            yield _wrong_length(record, (*path, key), key, value)
+    if wrong:
+        return
+    if record.drive_tau > 0 and any(per_control(options.lag, record.vel_dim)):
+        yield _lag_twice(context, record, (*path, "lag"))
+    step_time = context.scenario.world.step_time
+    if 0 < options.command_period <= step_time:
+        yield hint(
+            "actuation-unused",
+            (*path, "command_period"),
+            f"a command period of {options.command_period:g} s is not longer than a step of {step_time:g} s, so every "
+            "step has its command",
+            given=options.command_period,
+            fix=f"write more than {step_time:g}, or remove 'command_period'",
+        )
+    yield from _never_moves(record, options, path)
+
+
+def _why_unused(context: Context, record: ObjectRecord) -> str | None:
+    if record.kinematics is None:
+        return "has no drive"
+    if record.static:
+        return "is static"
+    if record.recorded and record.role == "obstacle":
+        return "replays a recording"
+    return "is moved by the calling program" if context.scenario.world.step_mode == "external" else None
+
+
+def _wrong_length(record: ObjectRecord, path: tuple[Any, ...], key: str, value: list[float]) -> Finding:
+    drive: Any = record.kinematics
+    rows = f" ({', '.join(drive.control_rows)})" if record.vel_dim == len(drive.control_rows) else ""
+    same = Edit("replace", path, value[0]) if len(value) == 1 else None
+    return error(
+        "wrong-length",
+        path,
+        f"'{key}' of '{drive.name}' must be one number, or a list of {record.vel_dim}{rows}, got {len(value)}",
+        given=value,
+        allowed=f"a number, or {record.vel_dim} numbers{rows}",
+        fix=f"{key}: {value[0]:g}" if same else None,
+        edit=same,
+    )
+
+
+def _lag_twice(context: Context, record: ObjectRecord, path: tuple[Any, ...]) -> Finding:
+    assert record.actuation is not None
+    own = getattr(record.kinematics, "tau", None) is not None
+    old = (*context.entry_path(record, "kinematics"), "tau") if own else ("world", "drive_tau")
+    written = (
+        f"'tau' of its kinematics is {record.drive_tau:g}" if own else f"'world.drive_tau' is {record.drive_tau:g}"
+    )
+    return error(
+        "lag-twice",
+        path,
+        f"the lag of '{record.name}' is given twice: {written}, too",
+        given=record.actuation.lag,
+        fix="remove 'tau', or this lag" if own else "write 'tau: 0' in its kinematics, or remove this lag",
+        edit=Edit("remove", old) if own else None,
+    )
+
+
+def _never_moves(record: ObjectRecord, options: Actuation, path: tuple[Any, ...]) -> Iterator[Finding]:
+    """A dead band, or a resolution, that no speed within the limits gets out of."""
+    travel = getattr(record.kinematics, "speeds", 0)
+    top = [max(abs(low), abs(high)) for low, high in zip(record.vel_min, record.vel_max, strict=False)][:travel]
+    for key, share, what in (("dead_band", 1.0, "is executed as 0"), ("resolution", 0.5, "is rounded to 0")):
+        sizes = per_control(getattr(options, key), travel)
+        if len(top) == travel > 0 and all(share * size > most for size, most in zip(sizes, top, strict=True)):
+            yield warning(
+                "no-speed",
+                (*path, key),
+                f"every speed that the limits of '{record.name}' allow {what}, so it cannot move",
+                given=getattr(options, key),
+                fix=f"write less than {min(top) / share:g}",
+            )
