@@ -411,6 +411,8 @@ class LidarErrors(_Options):
         divergence: float,
         rays: int,
         mixed: str,
+        beam_time: float,
+        segments: int,
     ) -> None: ...
 
 class Lidar2dOptions(_Options):

@@ -24,6 +24,13 @@ struct Sensing {
   double* velocities;             // (velocity_rows, mount.count) [m/s]
   const Vec2* object_velocities;  // (N,) world frame [m/s]; null when no sensor of the world has velocity rows
   BeamBuffers &buffers, &spare;
+  const std::vector<Mount>& parts;    // beams that are cast one part after the other; empty: all at once
+  Outlines& ghosts;                   // scratch: the moving objects at another time
+  int first_beam = 0, all_beams = 0;  // of the part: its first beam, and the number of beams of the whole scan
+  double spin = 0.0;                  // turn of the sensor from beam to beam within the part [rad]
+  Vec2 drift;                         // displacement of the sensor from beam to beam within the part [m]
+  double beam_time = 0.0;             // time from beam to beam within the part [s]
+  bool earlier = false;               // whether the moving objects are where `ghosts` has them
 
   /// The draws of the sensor: lane 0 is the noise of ranges, directions and velocities, lane 1 what realism adds.
   Draws draws(std::uint64_t lane = 0) const {
@@ -31,6 +38,16 @@ struct Sensing {
   }
   /// Factor on the standard deviations of the sensors of the carrier.
   double noise() const { return state.noise_scale[w * world.objects + mount.object]; }
+  Footprint footprint(int object) const {
+    const bool ghost = earlier && !world.is_static[object];
+    return ghost ? ghosts.footprint(*state.scenes[w].shapes, object) : state.footprint(world, w, object);
+  }
+  /// Centre and radius of the bounding circle of an object, world frame.
+  std::pair<Vec2, double> bounds(int object) const {
+    if (!earlier || world.is_static[object]) return state.bounds(world, w, object);
+    const Shapes& shapes = *state.scenes[w].shapes;
+    return {ghosts.centres[shapes.placed[object].object], shapes.radius[object]};
+  }
   std::uint64_t scan_number() const { return static_cast<std::uint64_t>(state.count[w]); }
 };
 
@@ -39,9 +56,15 @@ int velocity_rows(const Options&) {
   return 0;
 }
 
-/// Take one scan of a sensor of world w whose carrier is at `pose`.
+/// Number of parts of a scan that are cast one after the other while the sensor moves; 1: all beams at once.
+template <class Options>
+int sweep_parts(const Options&) {
+  return 1;
+}
+
+/// Take one scan of a sensor of world w whose carrier is at `pose`. With `sweeping` its beams are as old as they are.
 void scan(const World& world, State& state, int w, const Scan& sensor, const Pose& pose, Vec2 direction,
-          Workspace& work);
+          Workspace& work, bool sweeping);
 /// Write the world-frame velocities of all objects of world w to `work.velocities` if a sensor of the world needs them.
 void update_object_velocities(const World& world, const State& state, int w, Workspace& work);
 

@@ -28,6 +28,8 @@ OFF: dict[str, Any] = {
     "divergence": 0.0,
     "rays": 3,
     "mixed": "mean",
+    "beam_time": 0.0,
+    "segments": 8,
 }
 ROUND = {"angle_range": 2 * PI, "endpoint": False, "angle_std": 0.0}
 

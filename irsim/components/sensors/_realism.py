@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 import irsim._core as core
 from irsim.options.base import Options, problem
-from irsim.options.units import Fraction, Integer, Meters, Number, Radians
+from irsim.options.units import Bool, Fraction, Integer, Meters, Number, Radians
 from irsim.options.vectors import Component, vector
 
 __all__ = ["LidarRealism"]
@@ -65,6 +65,12 @@ class LidarRealism(Options):
     """What a beam reads whose cone meets surfaces more than 5 cm apart: a range between them, weighted by the light
     that comes back (a mixed pixel), the nearest or the farthest."""
 
+    sweep: Bool = False
+    """A scan takes time: beams are spread evenly over the `scan_time` of the lidar (of a full turn), the last one at
+    the end of the step, and each sees the world as it was then, from where the lidar was then."""
+    segments: Annotated[Integer, Field(ge=2, le=64)] = 8
+    """Parts of a scan, for `sweep`: within one the lidar stays in its place, while directions of beams are exact."""
+
     @model_validator(mode="after")
     def _check(self) -> LidarRealism:
         shares = self.dropout + self.short_share + self.random_share
@@ -77,13 +83,16 @@ class LidarRealism(Options):
             )
         return self
 
-    def kernel(self, range_max: float) -> core.LidarErrors:
+    def kernel(self, range_max: float, spacing: float, scan_time: float) -> core.LidarErrors:
         """The options of the core.
 
         Args:
             range_max: Range of the lidar [m].
+            spacing: Angle between neighboring beams [rad].
+            scan_time: Duration of a full turn [s].
         """
-        given = {name: getattr(self, name) for name in core.LidarErrors.fields}
+        given = {name: getattr(self, name) for name in core.LidarErrors.fields if name != "beam_time"}
+        given["beam_time"] = scan_time * spacing / (2 * math.pi) if self.sweep else 0.0
         given["range_dark"] = math.inf if self.range_dark is None else min(self.range_dark, range_max)
         given["incidence_max"] = math.inf if self.incidence_max is None else self.incidence_max
         return core.LidarErrors(**given)

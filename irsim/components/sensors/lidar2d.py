@@ -77,7 +77,7 @@ class Lidar2d(SensorOptions):
     """Spread the beams over both ends of `angle_range`. With false the last end has no beam, as in NumPy's `linspace`:
     n beams over a full turn are then n directions."""
     scan_time: Annotated[Seconds, Field(ge=0)] = 0.1
-    """Duration of one scan, only reported in messages."""
+    """Duration of one full turn: it is reported in messages, and counts for `sweep` of `realism`."""
     noise: Bool = False
     """Add Gaussian noise to the ranges of beams that hit something."""
     std: Annotated[Meters, Field(ge=0)] = 0.2

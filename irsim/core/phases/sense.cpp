@@ -7,7 +7,8 @@
 namespace irsim {
 
 void scan(const World& world, State& state, int w, const Scan& sensor, const Pose& pose, Vec2 direction,
-          Workspace& work) {
+          Workspace& work, bool sweeping) {
+  static const std::vector<Mount> kAtOnce;
   const Mount& mount = sensor.mount;
   const std::size_t at = static_cast<std::size_t>(w) * world.beams_per_world + mount.first;
   const std::size_t velocities = static_cast<std::size_t>(w) * world.velocities_per_world + mount.first_velocity;
@@ -23,7 +24,11 @@ void scan(const World& world, State& state, int w, const Scan& sensor, const Pos
                         state.velocities.data + velocities,
                         work.velocities.data(),
                         work.beams,
-                        work.blockers};
+                        work.blockers,
+                        sweeping ? sensor.parts : kAtOnce,
+                        work.ghost,
+                        0,
+                        mount.count};
   with(sensor.sensor, [&](const auto& options) { run(options, sensing); });
 }
 
@@ -39,7 +44,7 @@ void sense(const World& world, State& state, int w, Workspace& work) {
   update_object_velocities(world, state, w, work);
   for (const Scan& sensor : world.scans) {
     const int row = w * world.objects + sensor.mount.object;
-    scan(world, state, w, sensor, state.pose[row], state.heading(row), work);
+    scan(world, state, w, sensor, state.pose[row], state.heading(row), work, state.count[w] > 0);
   }
   if (world.fog && state.count[w] > 0) lift_fog(world, state, w, work);
 }

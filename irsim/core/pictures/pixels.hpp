@@ -54,7 +54,7 @@ inline void lay_over(std::uint8_t* pixel, const Ink& ink, int alpha) {
     std::uint32_t even = (above & kLanes) * part + (old & kLanes) * rest + kHalves;
     std::uint32_t odd = (above >> 8 & kLanes) * part + (old >> 8 & kLanes) * rest + kHalves;
     even = (even + (even >> 8 & kLanes)) >> 8 & kLanes;
-    odd = odd + (odd >> 8 & kLanes) & ~kLanes;
+    odd = (odd + (odd >> 8 & kLanes)) & ~kLanes;
     const std::uint32_t both = even | odd;
     std::memcpy(pixel, &both, sizeof both);
     return;

@@ -23,20 +23,25 @@ inline void aim_all(Fan& fan, const Mount& mount, Vec2 heading) {
   for (int i = 0; i < mount.count; ++i) fan.aim(i, rotate({mount.cosine[i], mount.sine[i]}, heading));
 }
 
-/// Cast at all objects that are not unobstructed and for which `seen(object)` holds.
+/// Cast at all objects that are not unobstructed and for which `seen(object)` holds, at the time of the beams.
 template <class Seen>
-void cast_at(Fan& fan, const World& world, const State& state, int w, Seen&& seen) {
-  for (const int object : world.visible) {
+void cast_at(Fan& fan, const Sensing& s, Seen&& seen) {
+  for (const int object : s.world.visible) {
     if (!seen(object)) continue;
-    const auto [centre, radius] = state.bounds(world, w, object);
+    const auto [centre, radius] = s.bounds(object);
     fan.consider(object, centre, radius);
   }
-  fan.cast([&](int object) { return state.footprint(world, w, object); });
+  fan.cast([&](int object) { return s.footprint(object); });
 }
 
 /// Cast at all objects that are not unobstructed, except `carrier`.
 inline void cast_at_visible(Fan& fan, const World& world, const State& state, int w, int carrier) {
-  cast_at(fan, world, state, w, [carrier](int object) { return object != carrier; });
+  for (const int object : world.visible) {
+    if (object == carrier) continue;
+    const auto [centre, radius] = state.bounds(world, w, object);
+    fan.consider(object, centre, radius);
+  }
+  fan.cast([&](int object) { return state.footprint(world, w, object); });
 }
 
 /// Take a scan of a sensor that has the options `offset`, `range_max`, `noise` and `angle_std`. With noise, beam i
@@ -48,17 +53,23 @@ Fan cast_beams(const Options& options, const Sensing& s, std::uint64_t first_err
   const double mounted = options.offset[2];
   const Vec2 heading = mounted == 0.0 ? s.direction : unit(wrap(s.pose.theta + mounted));
   Fan fan(s.buffers, origin, heading, s.mount, options.range_max);
-  if (options.noise && options.angle_std > 0.0) {
+  const bool shaky = options.noise && options.angle_std > 0.0;
+  if (shaky || s.spin != 0.0) {
     NormalDraws normal(s.draws());
     for (int i = 0; i < n; ++i) {
-      const double error = s.noise() * options.angle_std * normal(first_error + i);
+      double error = s.spin * (i - 0.5 * (n - 1));
+      if (shaky) error += s.noise() * options.angle_std * normal(first_error + i);
       fan.widen(error);
       fan.aim(i, rotate(unit(s.mount.angle[i] + error), heading));
     }
   } else {
     aim_all(fan, s.mount, heading);
   }
-  cast_at_visible(fan, s.world, s.state, s.w, s.mount.object);
+  if (s.earlier) {
+    cast_at(fan, s, [&](int object) { return object != s.mount.object; });
+  } else {
+    cast_at_visible(fan, s.world, s.state, s.w, s.mount.object);
+  }
   return fan;
 }
 

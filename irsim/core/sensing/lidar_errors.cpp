@@ -31,7 +31,7 @@ void pass_glass(const Sensing& s, const Fan& fan, Surface& surface) {
   if (first == n) return;
   Fan behind(s.spare, fan.origin(), fan.heading(), s.mount, fan.reach());
   for (int i = 0; i < n; ++i) behind.aim(i, fan.beam(i));
-  cast_at(behind, s.world, s.state, s.w,
+  cast_at(behind, s,
           [&](int object) { return object != s.mount.object && s.world.material[object] != Material::glass; });
   for (int i = first; i < n; ++i) {
     if (!passes(i)) continue;
@@ -51,9 +51,26 @@ void follow_mirrors(const Sensing& s, const Fan& fan, Surface& surface) {
     const Vec2 on = beam - normal * (2.0 * dot(beam, normal));
     Fan next(s.spare, at, on, one, fan.reach() - beams.range[i]);
     next.aim(0, on);
-    cast_at(next, s.world, s.state, s.w, [&](int object) { return object != hit; });
+    cast_at(next, s, [&](int object) { return object != hit; });
     beams.hit[i] = next.hit(0), beams.range[i] += next.range(0);
     if (next.hit(0) >= 0) beams.cosine[i] = std::fabs(dot(surface.normal(next, 0), on));
+  }
+}
+
+/// Correct the ranges of a part of a sweep for the motion of sensor and target between its middle and each beam, as if
+/// surfaces were planes.
+void follow_motion(const Sensing& s, const Fan& fan, Surface& surface) {
+  constexpr double kGrazing = 0.05;  // cosine below which a range is left as it is
+  BeamBuffers& beams = s.buffers;
+  for (int i = 0; i < s.mount.count; ++i) {
+    const int hit = beams.hit[i];
+    if (hit < 0) continue;
+    const Vec2 normal = surface.normal(fan, i);
+    const double facing = dot(fan.beam(i), normal), after = i - 0.5 * (s.mount.count - 1);
+    if (std::fabs(facing) < kGrazing) continue;
+    const Vec3& twist = s.state.twist[s.w * s.world.objects + hit];
+    const Vec2 apart = s.drift - Vec2{twist[0], twist[1]} * s.beam_time;
+    beams.range[i] = std::max(0.0, beams.range[i] - dot(apart, normal) * after / facing);
   }
 }
 
@@ -71,8 +88,9 @@ void widen_beams(const LidarErrors& errors, const Sensing& s, const Fan& fan) {
     }
     const Vec2 turn = unit(aside);
     Fan ray(s.spare, fan.origin(), rotate(fan.heading(), turn), s.mount, fan.reach());
+    ray.widen(fan);
     for (int i = 0; i < n; ++i) ray.aim(i, rotate(fan.beam(i), turn));
-    cast_at(ray, s.world, s.state, s.w, [&](int object) { return object != s.mount.object; });
+    cast_at(ray, s, [&](int object) { return object != s.mount.object; });
     for (int i = 0; i < n; ++i) {
       ranges[i] = ray.hit(i) < 0 ? kInfinity : ray.range(i);
       if (beams.hit[i] < 0 && ray.hit(i) >= 0) beams.hit[i] = ray.hit(i);
@@ -130,9 +148,9 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
   const bool steep = errors.incidence_max < 0.5 * kPi, dim = errors.range_dark < limits.farthest;
   const bool looks = steep || dim || s.world.optics;
   beams.power.assign(n, 1.0);
+  Surface surface(s);
   if (looks) {
     beams.cosine.assign(n, 1.0);
-    Surface surface(s.world, s.state, s.w);
     for (int i = 0; i < n; ++i) {
       if (fan.hit(i) >= 0) beams.cosine[i] = surface.cosine(fan, i);
     }
@@ -141,6 +159,7 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
       follow_mirrors(s, fan, surface);
     }
   }
+  if (s.earlier) follow_motion(s, fan, surface);
   if (errors.divergence > 0.0 && errors.rays > 1) widen_beams(errors, s, fan);
 
   const Draws added = s.draws(1);
@@ -150,7 +169,7 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
   const double least_cosine = steep ? std::cos(errors.incidence_max) : 0.0;
   const double shorts = errors.dropout + errors.short_share, randoms = shorts + errors.random_share;
   const bool draws = dim || randoms > 0.0;
-  const std::uint64_t first_block = s.scan_number() * static_cast<std::uint64_t>(n);
+  const std::uint64_t first_block = s.scan_number() * static_cast<std::uint64_t>(s.all_beams) + s.first_beam;
   for (int i = 0; i < n; ++i) {
     int hit = beams.hit[i];
     bool returned = hit >= 0 && !(steep && beams.cosine[i] < least_cosine);

@@ -28,6 +28,8 @@ struct LidarErrors {
   double divergence;                       // full angle of the cone of a beam [rad]
   int rays;                                // rays cast for the cone of a beam
   Mixed mixed;
+  double beam_time;  // time from beam to beam [s]; 0: all beams at once, at the end of the step
+  int segments;      // parts of the scan for each of which the sensor has one place
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
     using E = LidarErrors;
@@ -37,7 +39,8 @@ struct LidarErrors {
         field("dropout", &E::dropout), field("short_share", &E::short_share), field("short_rate", &E::short_rate),
         field("random_share", &E::random_share), field("range_dark", &E::range_dark), field("fade", &E::fade),
         field("incidence_max", &E::incidence_max), field("blind", &E::blind), field("divergence", &E::divergence),
-        field("rays", &E::rays), choice("mixed", &E::mixed, "mean", "nearest", "farthest"));
+        field("rays", &E::rays), choice("mixed", &E::mixed, "mean", "nearest", "farthest"),
+        field("beam_time", &E::beam_time), field("segments", &E::segments));
   }
 };
 

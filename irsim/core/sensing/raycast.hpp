@@ -19,6 +19,8 @@ class Fan {
   void aim(int i, Vec2 direction) { buffers_.dx[i] = direction.x, buffers_.dy[i] = direction.y; }
   /// Allow for beams that deviate from their nominal angle by `error` [rad].
   void widen(double error);
+  /// Allow for the deviations of another fan with the same beams.
+  void widen(const Fan& like) { blur_ = like.blur_; }
 
   /// Remember a body for `cast` if its bounding circle is within reach and in view.
   void consider(int object, Vec2 centre, double radius);

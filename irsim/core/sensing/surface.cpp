@@ -24,7 +24,7 @@ double distance_to(Vec2 p, Vec2 a, Vec2 b) {
 Vec2 Surface::normal(const Fan& fan, int i) {
   const int object = fan.hit(i);
   const Vec2 at = fan.end(i);
-  const Footprint body = state_.footprint(world_, w_, object);
+  const Footprint body = sensing_.footprint(object);
   if (object == object_ && part_ < body.count && body.parts[part_].kind != Kind::circle) {
     const Vec2* edge = body.vertices + body.parts[part_].first + edge_;
     if (distance_to(at, edge[0], edge[1]) <= kOnEdge * (1.0 + norm(at))) return normal_to(edge[1] - edge[0]);

@@ -1,15 +1,15 @@
 // The surfaces that beams hit: which way they face.
 #pragma once
 
+#include "sensing.hpp"
 #include "sensing/raycast.hpp"
-#include "world/state.hpp"
 
 namespace irsim {
 
 /// Looks up the surfaces of one scan. Neighboring beams mostly hit the same edge, which is tried first.
 class Surface {
  public:
-  Surface(const World& world, const State& state, int w) : world_(world), state_(state), w_(w) {}
+  explicit Surface(const Sensing& sensing) : sensing_(sensing) {}
 
   /// Unit normal, world frame, of the surface that beam i of a fan hits; either of the two directions. The cells of
   /// maps are steps of what they stand for: there it is the normal of the line through the hits of the neighboring
@@ -21,9 +21,8 @@ class Surface {
  private:
   Vec2 normal_of_cells(const OccupancyGrid& grid, const Fan& fan, int i) const;
 
-  const World& world_;
-  const State& state_;
-  int w_, object_ = -1, part_ = 0, edge_ = 0;
+  const Sensing& sensing_;
+  int object_ = -1, part_ = 0, edge_ = 0;
 };
 
 }  // namespace irsim

@@ -5,7 +5,7 @@
 
 #include "fields.hpp"
 #include "sensing/beams.hpp"
-#include "sensing/lidar_errors.hpp"
+#include "sensing/sweep.hpp"
 
 namespace irsim {
 
@@ -38,37 +38,52 @@ inline std::vector<double> beams(const FmcwLidar2dOptions& options) {
 
 inline int velocity_rows(const FmcwLidar2dOptions&) { return 1; }
 
+inline int sweep_parts(const FmcwLidar2dOptions& options) {
+  return options.realism && options.realism->beam_time > 0.0 ? options.realism->segments : 1;
+}
+
+/// Write the radial velocities of hits; other beams have none. The noise of beam i is the normal draw `first + i`.
+inline void write_radial_velocities(const FmcwLidar2dOptions& options, const Sensing& s, const Fan& fan,
+                                    std::uint64_t first) {
+  NormalDraws error(s.draws());
+  const Vec2 own = options.motion_compensate ? Vec2{} : s.object_velocities[s.mount.object];
+  for (int i = 0; i < s.mount.count; ++i) {
+    double receding = 0.0;
+    if (s.valid[i] && s.hits[i] >= 0) {
+      receding = dot(s.object_velocities[s.hits[i]] - own, fan.beam(i));
+      if (options.velocity_noise_std > 0.0) receding += s.noise() * options.velocity_noise_std * error(first + i);
+    }
+    s.velocities[i] = receding;
+  }
+}
+
 /// Take a scan. A hit whose (noisy) range is outside the limits is not valid, and its velocity is 0.
 inline void fmcw_lidar2d(const FmcwLidar2dOptions& options, const Sensing& s) {
   const int n = s.mount.count;
   if (n == 0) return;
   // draws of a scan: n range errors, n direction errors, n velocity errors
   const std::uint64_t first_draw = 3 * s.scan_number() * static_cast<std::uint64_t>(n);
-  const Fan fan = cast_beams(options, s, first_draw + n);
-  const bool noisy = options.noise && options.std > 0.0, shaky = options.velocity_noise_std > 0.0;
-  NormalDraws range_error(s.draws()), velocity_error(s.draws());
-  const Vec2 own = options.motion_compensate ? Vec2{} : s.object_velocities[s.mount.object];
+  const bool noisy = options.noise && options.std > 0.0;
   if (options.realism) {
-    const double std = noisy ? options.std : 0.0;
-    write_with_errors(*options.realism, {options.range_min, options.range_max, std}, s, fan, first_draw);
+    const RangeLimits limits{options.range_min, options.range_max, noisy ? options.std : 0.0};
+    return sweep(*options.realism, s, [&](const Sensing& part) {
+      const std::uint64_t first = first_draw + part.first_beam;
+      const Fan fan = cast_beams(options, part, first + n);
+      write_with_errors(*options.realism, limits, part, fan, first);
+      write_radial_velocities(options, part, fan, first + 2 * n);
+    });
   }
+  const Fan fan = cast_beams(options, s, first_draw + n);
+  NormalDraws normal(s.draws());
   for (int i = 0; i < n; ++i) {
-    if (!options.realism) {
-      const int hit = fan.hit(i);
-      double range = hit < 0 ? options.range_max : fan.range(i);
-      if (hit >= 0 && noisy) range += s.noise() * options.std * range_error(first_draw + i);
-      s.ranges[i] = clip(range, options.range_min, options.range_max);
-      s.hits[i] = hit;
-      s.valid[i] = hit >= 0 && range >= options.range_min && range <= options.range_max;
-    }
-    const int hit = s.hits[i];
-    double receding = 0.0;
-    if (s.valid[i] && hit >= 0) {
-      receding = dot(s.object_velocities[hit] - own, fan.beam(i));
-      if (shaky) receding += s.noise() * options.velocity_noise_std * velocity_error(first_draw + 2 * n + i);
-    }
-    s.velocities[i] = receding;
+    const int hit = fan.hit(i);
+    double range = hit < 0 ? options.range_max : fan.range(i);
+    if (hit >= 0 && noisy) range += s.noise() * options.std * normal(first_draw + i);
+    s.ranges[i] = clip(range, options.range_min, options.range_max);
+    s.hits[i] = hit;
+    s.valid[i] = hit >= 0 && range >= options.range_min && range <= options.range_max;
   }
+  write_radial_velocities(options, s, fan, first_draw + 2 * n);
 }
 
 }  // namespace irsim

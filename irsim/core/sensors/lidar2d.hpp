@@ -5,7 +5,7 @@
 
 #include "fields.hpp"
 #include "sensing/beams.hpp"
-#include "sensing/lidar_errors.hpp"
+#include "sensing/sweep.hpp"
 
 namespace irsim {
 
@@ -46,16 +46,25 @@ inline void write_velocities(const Lidar2dOptions& options, const Sensing& s) {
   }
 }
 
+/// Whether scans take time, and the parts in which they are cast.
+inline int sweep_parts(const Lidar2dOptions& options) {
+  return options.realism && options.realism->beam_time > 0.0 ? options.realism->segments : 1;
+}
+
 inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
   const int n = s.mount.count;
   const std::uint64_t first_draw = 2 * s.scan_number() * static_cast<std::uint64_t>(n);  // n ranges, n directions
-  const Fan fan = cast_beams(options, s, first_draw + n);
   const bool noisy = options.noise && options.std > 0.0;
   if (options.realism) {
-    const double std = noisy ? options.std : 0.0;
-    write_with_errors(*options.realism, {options.range_min, options.range_max, std}, s, fan, first_draw);
+    const RangeLimits limits{options.range_min, options.range_max, noisy ? options.std : 0.0};
+    sweep(*options.realism, s, [&](const Sensing& part) {
+      const std::uint64_t first = first_draw + part.first_beam;
+      const Fan fan = cast_beams(options, part, first + n);
+      write_with_errors(*options.realism, limits, part, fan, first);
+    });
     return write_velocities(options, s);
   }
+  const Fan fan = cast_beams(options, s, first_draw + n);
   NormalDraws normal(s.draws());
   // Copies, because for all that the compiler knows, writing a byte of `valid` could change what these point to.
   const double nearest = options.range_min, farthest = options.range_max, *measured = fan.ranges();

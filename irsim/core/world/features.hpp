@@ -21,6 +21,7 @@ struct BehaviorGroup {
 struct Scan {
   Sensor sensor;
   Mount mount;
+  std::vector<Mount> parts;  // of the beams, which are cast one after the other; empty: all at once
 };
 
 }  // namespace irsim

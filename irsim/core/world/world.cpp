@@ -79,6 +79,23 @@ void set_beams(Mount& mount, std::vector<double> angles, const Mount* like = nul
   }
 }
 
+/// Parts of a mount with about equally many beams.
+std::vector<Mount> split(const Mount& mount, int parts) {
+  std::vector<Mount> out;
+  for (int k = 0; k < parts; ++k) {
+    const auto begin = static_cast<std::ptrdiff_t>(mount.count) * k / parts;
+    const auto end = static_cast<std::ptrdiff_t>(mount.count) * (k + 1) / parts;
+    const auto cut = [&](const std::vector<double>& list) {
+      return std::vector<double>(list.begin() + begin, list.begin() + end);
+    };
+    Mount part = mount;
+    part.first += static_cast<int>(begin), part.count = static_cast<int>(end - begin);
+    part.angle = cut(mount.angle), part.cosine = cut(mount.cosine), part.sine = cut(mount.sine);
+    out.push_back(std::move(part));
+  }
+  return out;
+}
+
 /// Add views of the fog with beams so dense that they miss no cell within reach.
 void add_fog_beams(World& world) {
   const Fog& fog = *world.fog;
@@ -108,7 +125,9 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
     });
     world.beams_per_world += mount.count;
     world.velocities_per_world += mount.count * mount.velocity_rows;
-    world.scans.push_back({spec.sensors[k], mount});
+    int parts = 1;
+    with(spec.sensors[k], [&](const auto& options) { parts = std::min(sweep_parts(options), mount.count); });
+    world.scans.push_back({spec.sensors[k], mount, parts > 1 ? split(mount, parts) : std::vector<Mount>()});
   }
 }
 

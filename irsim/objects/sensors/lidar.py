@@ -52,6 +52,8 @@ class Lidar2D:
         number: Number of beams; beam 0 is the rightmost one, and numbers increase counterclockwise.
         angle_list: Nominal angles of the beams in the sensor frame, (number,) [rad].
         angle_min, angle_max, angle_inc: First angle, last angle, and increment [rad].
+        time_inc: Time from beam to beam [s] of a lidar whose `realism` has `sweep`, else 0; the last beam is taken at
+            the end of the step.
         range_min, range_max: Limits of the ranges [m].
         offset: Pose of the sensor in the body frame, (3, 1): x, y [m], heading [rad].
         alpha, color: How the beams are drawn; may be changed.
@@ -73,6 +75,7 @@ class Lidar2D:
     angle_std: float
     offset: Floats
     has_velocity: bool
+    realism: Any
     angle_list: Floats
     angle_min: float
     angle_max: float
@@ -88,7 +91,7 @@ class Lidar2D:
     _no_velocities: Floats
     _settings: ClassVar[tuple[str, ...]] = (
         "number", "endpoint", "range_min", "range_max", "angle_range", "scan_time", "noise", "std", "angle_std",
-        "offset", "has_velocity",
+        "offset", "has_velocity", "realism",
     )  # fmt: skip
 
     def __init__(self, simulation: Simulation, parent: SimObject, options: Any, index: int) -> None:
@@ -128,7 +131,8 @@ class Lidar2D:
         own["angle_min"], own["angle_max"] = float(angles[0]), float(angles[-1])
         spaces = number - 1 if self.endpoint else number
         own["angle_inc"] = self.angle_range / spaces if number > 1 else 0.0
-        own["time_inc"] = 0.0
+        sweeps = self.realism is not None and self.realism.sweep
+        own["time_inc"] = self.scan_time * self.angle_inc / (2 * math.pi) if sweeps else 0.0
         own["_no_velocities"] = np.zeros((2, self.number))
         self._fixed = {
             "angle_min": self.angle_min,

@@ -67,7 +67,10 @@ def kernels_of(record: ObjectRecord, group_behavior: BehaviorOptions | None, zon
 def _sensor(options: Any) -> Any:
     """The options of a sensor; None for one computed in Python."""
     realism = getattr(options, "realism", None)
-    errors = None if realism is None else realism.kernel(options.range_max)
+    errors = None
+    if realism is not None:
+        spaces = max(1, options.number - options.endpoint)
+        errors = realism.kernel(options.range_max, options.angle_range / spaces, options.scan_time)
     return kernel_options(SENSORS, options, realism=errors)
 
 
