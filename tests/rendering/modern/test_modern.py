@@ -344,7 +344,7 @@ def test_many_robots_lose_names_plans_and_goals_before_bodies(opened: Opened) ->
         counts = {part: len(marks_of(scene, part)) for part in ("dart", "plan", "goal")}
         seen[number] = counts["dart"], counts["plan"] > 0, counts["goal"] > 0, len(labels_of(scene, "name"))
         assert words_of(scene)["facts"] == f"{number} robots"
-    assert seen == {6: (6, True, True, 6), 20: (20, False, True, 0), 60: (60, False, False, 0)}
+    assert seen == {6: (6, True, True, 6), 20: (20, False, True, 20), 60: (60, False, False, 0)}
 
 
 def test_keys_of_the_scenario_win(opened: Opened) -> None:
