@@ -733,8 +733,9 @@ class Variation:
     """A quantity that is drawn for each scene from the stream `task`, uniformly.
 
     A `number` says how many of the objects take part, `latency` is a whole number of steps, and the others are factors:
-    `size` (of the footprint about the origin of the body frame), `speed` and `acceleration` (of the limits) and
-    `sensor_noise` (of the standard deviations). Objects are drawn one by one, or with `same` together.
+    `size` (of the footprint about the origin of the body frame), `speed` and `acceleration` (of the limits),
+    `sensor_noise` (of the standard deviations), `delay` and `lag` (of the actuators). Objects are drawn one by one, or
+    with `same` together.
     """
 
     def __init__(self, *, quantity: str, objects: Sequence[int], low: float, high: float, same: bool) -> None: ...
@@ -868,7 +869,9 @@ class State:
     size_scale: Floats  # (R,) factors of this scene on the footprint,
     speed_scale: Floats  # (R,) on the limits of speeds, which `pace` contains,
     acceleration_scale: Floats  # (R,) on the limits of accelerations,
-    noise_scale: Floats  # (R,) and on the standard deviations of sensors
+    noise_scale: Floats  # (R,) on the standard deviations of sensors,
+    delay_scale: Floats  # (R,) on the dead time of actuators,
+    lag_scale: Floats  # (R,) and on their lag
     latency: NDArray[np.int32]  # (R,) steps after which the caller is asked to execute an action
     level: NDArray[np.int32]  # (W,) level of the scenes drawn from now on; may be set
     variant: NDArray[np.int32]  # (W,) index among the variants of the world in this scene; -1 without any

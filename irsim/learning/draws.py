@@ -25,6 +25,8 @@ _ARRAYS = {
     "acceleration": "acceleration_scale",
     "sensor_noise": "noise_scale",
     "latency": "latency",
+    "delay": "delay_scale",
+    "lag": "lag_scale",
 }
 """Quantity -> array of the state of the core."""
 

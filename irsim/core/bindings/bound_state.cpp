@@ -58,6 +58,8 @@ void BoundState::expose() {
   speed_scale = view<double>(state.speed_scale.memory, {rows});
   acceleration_scale = view<double>(state.acceleration_scale.memory, {rows});
   noise_scale = view<double>(state.noise_scale.memory, {rows});
+  delay_scale = view<double>(state.delay_scale.memory, {rows});
+  lag_scale = view<double>(state.lag_scale.memory, {rows});
   latency = view<std::int32_t>(state.latency.memory, {rows});
   level = view<std::int32_t>(state.level.memory, {worlds});
   variant = view<std::int32_t>(state.variant.memory, {worlds});

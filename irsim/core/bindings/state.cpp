@@ -202,6 +202,8 @@ void bind_state(nb::module_& m) {
       .def_ro("speed_scale", &S::speed_scale)
       .def_ro("acceleration_scale", &S::acceleration_scale)
       .def_ro("noise_scale", &S::noise_scale)
+      .def_ro("delay_scale", &S::delay_scale)
+      .def_ro("lag_scale", &S::lag_scale)
       .def_ro("latency", &S::latency)
       .def_ro("level", &S::level)
       .def_ro("variant", &S::variant)

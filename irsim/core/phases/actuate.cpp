@@ -80,7 +80,8 @@ Vec3 actuate(const World& world, State& state, int row, const Vec3& command) {
   if (actuators.slots > 0) {
     Vec3* queue = queue_of(world, state, row);
     queue[step % actuators.slots] = now.held;
-    for (int c = 0; c < 3; ++c) wanted[c] = delayed(queue, actuators.slots, step, c, actuators.delay[c]);
+    for (int c = 0; c < 3; ++c)
+      wanted[c] = delayed(queue, actuators.slots, step, c, actuators.delay[c] * state.delay_scale[row]);
   }
   for (int c = 0; c < 3; ++c) {
     const double unit = options.resolution[c];
@@ -91,7 +92,7 @@ Vec3 actuate(const World& world, State& state, int row, const Vec3& command) {
   Vec3 executed;
   for (int c = 0; c < 3; ++c) {
     now.rate[c] = (now.setpoint[c] - before[c]) / world.step_time;
-    const double lag = options.lag[c];
+    const double lag = options.lag[c] * state.lag_scale[row];
     now.lagged[c] = lag > 0.0 ? now.lagged[c] - (now.setpoint[c] - now.lagged[c]) * std::expm1(-world.step_time / lag)
                               : now.setpoint[c];
     executed[c] = std::fabs(now.lagged[c]) < options.dead_band[c] ? 0.0 : now.lagged[c];

@@ -32,6 +32,8 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   to.speed_scale[row] = from.speed_scale[old_row];
   to.acceleration_scale[row] = from.acceleration_scale[old_row];
   to.noise_scale[row] = from.noise_scale[old_row];
+  to.delay_scale[row] = from.delay_scale[old_row];
+  to.lag_scale[row] = from.lag_scale[old_row];
   to.latency[row] = from.latency[old_row];
   to.start_step[row] = from.start_step[old_row];
   to.appeared[row] = from.appeared[old_row];

@@ -97,6 +97,8 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       speed_scale(rows, 1.0),
       acceleration_scale(rows, 1.0),
       noise_scale(rows, 1.0),
+      delay_scale(rows, 1.0),
+      lag_scale(rows, 1.0),
       latency(rows),
       infeasible(rows),
       between_steps(rows),

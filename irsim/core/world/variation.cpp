@@ -47,6 +47,12 @@ void set(State& state, int row, Quantity quantity, double value) {
     case Quantity::latency:
       state.latency[row] = static_cast<std::int32_t>(value);
       break;
+    case Quantity::delay:
+      state.delay_scale[row] = value;
+      break;
+    case Quantity::lag:
+      state.lag_scale[row] = value;
+      break;
   }
 }
 
@@ -58,6 +64,7 @@ void vary(const World& world, State& state, int w) {
   for (int row = first; row < first + world.objects; ++row) {
     state.takes_part[row] = 1;
     state.size_scale[row] = state.speed_scale[row] = state.acceleration_scale[row] = state.noise_scale[row] = 1.0;
+    state.delay_scale[row] = state.lag_scale[row] = 1.0;
     state.latency[row] = 0;
   }
   const Key key = make_key(state.seed[w], state.scene_index[w], 0);

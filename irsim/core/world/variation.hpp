@@ -1,4 +1,4 @@
-// The differences between the episodes of a task, besides places: who takes part, sizes, limits, noise, latency,
+// The differences between the episodes of a task, besides places: who takes part, sizes, limits, noise, delays,
 // geometry.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace irsim {
 
-enum class Quantity { number, size, speed, acceleration, sensor_noise, latency };
+enum class Quantity { number, size, speed, acceleration, sensor_noise, latency, delay, lag };
 
 /// A quantity that is drawn for each scene, uniformly: a whole number of `low` to `high`, or a factor.
 struct Variation {
@@ -19,7 +19,8 @@ struct Variation {
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
     using V = Variation;
-    return visit(choice("quantity", &V::quantity, "number", "size", "speed", "acceleration", "sensor_noise", "latency"),
+    return visit(choice("quantity", &V::quantity, "number", "size", "speed", "acceleration", "sensor_noise", "latency",
+                        "delay", "lag"),
                  field("objects", &V::objects), field("low", &V::low), field("high", &V::high),
                  field("same", &V::same));
   }

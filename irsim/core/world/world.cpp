@@ -131,21 +131,34 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
   }
 }
 
-/// The actuators of an object; queues of a world follow each other.
-Actuators make_actuators(World& world, const ObjectSpec& spec) {
+Actuators make_actuators(const ObjectSpec& spec, double step_time) {
   Actuators made;
   made.options = *spec.actuation;
-  made.period = spec.actuation->command_period / world.step_time;
-  double longest = 0.0;
+  made.period = spec.actuation->command_period / step_time;
   for (int c = 0; c < 3; ++c) {
-    made.delay[c] = spec.actuation->delay[c] / world.step_time;
-    longest = std::max(longest, made.delay[c]);
+    made.delay[c] = spec.actuation->delay[c] / step_time;
     made.noisy = made.noisy || spec.actuation->noise[c] > 0.0;
   }
-  made.first = world.queue_slots;
-  if (longest > 0.0) made.slots = 2 + static_cast<std::int64_t>(std::ceil(longest));
-  world.queue_slots += static_cast<std::size_t>(made.slots);
   return made;
+}
+
+/// Give each object the queue that its longest dead time needs.
+void lay_out_queues(World& world) {
+  std::vector<double> scale(world.actuators.size(), 1.0);
+  for (const Level& level : world.levels) {
+    for (const Variation& v : level.variations) {
+      if (v.quantity != Quantity::delay || scale.empty()) continue;
+      for (const int i : v.objects) scale[i] = std::max(scale[i], v.high);
+    }
+  }
+  world.queue_slots = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    Actuators& actuators = world.actuators[i];
+    const double longest = scale[i] * std::max({actuators.delay[0], actuators.delay[1], actuators.delay[2]});
+    actuators.first = world.queue_slots;
+    actuators.slots = longest > 0.0 ? 2 + static_cast<std::int64_t>(std::ceil(longest)) : 0;
+    world.queue_slots += static_cast<std::size_t>(actuators.slots);
+  }
 }
 
 void check(const ObjectSpec& spec) {
@@ -263,7 +276,8 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
   }
   if (std::any_of(has_actuators.begin(), has_actuators.end(), [](std::uint8_t has) { return has != 0; })) {
     for (int i = 0; i < objects; ++i)
-      actuators.push_back(has_actuators[i] ? make_actuators(*this, specs[i]) : Actuators{});
+      actuators.push_back(has_actuators[i] ? make_actuators(specs[i], step_time) : Actuators{});
+    lay_out_queues(*this);
   }
   find_members(*this);
   if (fog) add_fog_beams(*this);
@@ -296,6 +310,7 @@ void World::set_levels(std::vector<Level> given, const std::vector<std::vector<i
       throw std::invalid_argument("a level names a variant that does not exist");
   }
   levels = std::move(given);
+  lay_out_queues(*this);
 }
 
 void World::set_variants(std::vector<std::shared_ptr<World>> given) {

@@ -45,7 +45,7 @@ __all__ = [
 ]
 
 
-QUANTITIES = ("number", "size", "speed", "acceleration", "sensor_noise", "latency")
+QUANTITIES = ("number", "size", "speed", "acceleration", "sensor_noise", "latency", "delay", "lag")
 """Quantities drawn for objects of the scenario, in the order of the keys."""
 
 
@@ -86,7 +86,8 @@ class Randomize(Options):
         "accelerations": "acceleration",
         "acce": "acceleration",
         "noise": "sensor_noise",
-        "delay": "latency",
+        "dead_time": "delay",
+        "tau": "lag",
         "params": "parameters",
     }
 
@@ -104,7 +105,11 @@ class Randomize(Options):
     """Factor on the standard deviations of the sensors, which need `noise: true`."""
     latency: dict[str, Steps] = {}
     """Steps after which actions of learners are executed; 0 is at once. Until the first one a learner stands still."""
-    same: list[Literal["size", "speed", "acceleration", "sensor_noise", "latency"]] = []
+    delay: dict[str, FactorsFromZero] = {}
+    """Factor on `delay` of the `actuation` of the objects; at most 2 s come of it."""
+    lag: dict[str, FactorsFromZero] = {}
+    """Factor on `lag` of the `actuation` of the objects."""
+    same: list[Literal["size", "speed", "acceleration", "sensor_noise", "latency", "delay", "lag"]] = []
     """Quantities of which all objects of a word share one draw."""
     parameters: dict[str, Annotated[list[Value], Field(min_length=1, max_length=64)]] = {}
     """Parameters of the template: [low, high] for numbers, a list of values otherwise. They change the geometry, so
@@ -114,8 +119,8 @@ class Randomize(Options):
     a number are spread evenly from low to high, in an order of its own for each parameter."""
     observed: list[Annotated[str, Field(min_length=1, max_length=100)]] = []
     """Draws that the policy observes, at the end of its observation, from 0 (low) to 1 (high): `size`, `speed`,
-    `acceleration`, `sensor_noise`, `latency` of the learner itself, `number.WORD`, `parameters.NAME`. A policy that
-    observes them cannot be exported, because only a simulation knows them."""
+    `acceleration`, `sensor_noise`, `latency`, `delay`, `lag` of the learner itself, `number.WORD`, `parameters.NAME`.
+    A policy that observes them cannot be exported, because only a simulation knows them."""
 
 
 def merged(base: Randomize, change: Randomize) -> Randomize:

@@ -16,6 +16,7 @@ from irsim.learning.tasks.files import task_error
 from irsim.learning.tasks.task import QUANTITIES, Randomize, Task, merged
 from irsim.learning.tasks.team import team_of
 from irsim.options.units import Value
+from irsim.scenario.model.actuation import MAX_DELAY, per_control
 from irsim.scenario.resolve.resolved import DrawnQuantity, ObjectRecord, ResolvedScenario
 from irsim.simulation.random_streams import generator
 from irsim.simulation.roles import HUMAN, kinds_of
@@ -170,8 +171,21 @@ def _check(
     if quantity == "sensor_noise" and not any(_is_noisy(sensor) for r in records for sensor in r.sensors):
         what = f"no sensor of {clean(word)!r} is noisy"
         raise task_error(where, what, "give a sensor `noise: true` and a `std` in the scenario")
+    if quantity in ("delay", "lag"):
+        longest = [max(_times(record, quantity), default=0.0) for record in records]
+        if not all(longest):
+            what = f"the actuation of {clean(word)!r} has no {quantity} that could be drawn"
+            raise task_error(where, what, f"give these objects `actuation: {{{quantity}: 0.1}}` in the scenario")
+        if quantity == "delay" and high * max(longest) > MAX_DELAY:
+            what = f"a delay of {high * max(longest):g} s would be longer than {MAX_DELAY:g} s"
+            raise task_error(where, what, f"end the range at {MAX_DELAY / max(longest):g}")
     if quantity == "size" and any(record.is_terrain for record in records):
         raise task_error(where, "maps and walls around the world have no size", "name other objects")
+
+
+def _times(record: ObjectRecord, key: str) -> list[float]:
+    """The times of a key of the actuation of an object, one per control [s]; empty without actuation."""
+    return [] if record.actuation is None else per_control(getattr(record.actuation, key), record.vel_dim)
 
 
 def _is_noisy(sensor: Any) -> bool:

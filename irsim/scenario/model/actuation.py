@@ -11,7 +11,7 @@ from irsim.options.base import Options
 from irsim.options.units import Number, Seconds
 from irsim.options.vectors import PerObject
 
-__all__ = ["MOST_CONTROLS", "PER_CONTROL", "Actuation", "per_control"]
+__all__ = ["MAX_DELAY", "MOST_CONTROLS", "PER_CONTROL", "Actuation", "per_control"]
 
 MOST_CONTROLS = 3
 """Number of controls of a drive up to which its commands pass through actuators."""

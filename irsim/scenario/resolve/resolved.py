@@ -226,7 +226,7 @@ class DrawnQuantity:
     """A quantity that is drawn for each scene, uniformly; see ``Variation`` in ``irsim/_core.pyi``.
 
     Attributes:
-        quantity: number, size, speed, acceleration, sensor_noise or latency.
+        quantity: number, size, speed, acceleration, sensor_noise, latency, delay or lag.
         word: Name of the objects in the task.
         objects: Their ids.
         low, high: Range.
