@@ -113,14 +113,15 @@ struct Draws {
   static double fraction(std::uint64_t word) { return static_cast<double>(word >> 11) * 0x1.0p-53; }
 };
 
-/// Normal draws taken mostly in order: each block is computed once.
-class NormalDraws {
+/// Draws taken mostly in order: each block is computed once.
+template <std::array<double, 4> (Draws::*Make)(std::uint64_t) const>
+class InOrder {
  public:
-  explicit NormalDraws(const Draws& draws) : draws_(draws) {}
+  explicit InOrder(const Draws& draws) : draws_(draws) {}
   double operator()(std::uint64_t draw) {
     if (draw / 4 != index_) {
       index_ = draw / 4;
-      block_ = draws_.normals(index_);
+      block_ = (draws_.*Make)(index_);
     }
     return block_[draw % 4];
   }
@@ -130,5 +131,8 @@ class NormalDraws {
   std::uint64_t index_ = ~std::uint64_t{0};
   std::array<double, 4> block_{};
 };
+
+using NormalDraws = InOrder<&Draws::normals>;
+using UniformDraws = InOrder<&Draws::uniforms>;
 
 }  // namespace irsim

@@ -54,11 +54,25 @@ Fan cast_beams(const Options& options, const Sensing& s, std::uint64_t first_err
   const Vec2 heading = mounted == 0.0 ? s.direction : unit(wrap(s.pose.theta + mounted));
   Fan fan(s.buffers, origin, heading, s.mount, options.range_max);
   const bool shaky = options.noise && options.angle_std > 0.0;
-  if (shaky || s.spin != 0.0) {
+  if (s.spin != 0.0) {
+    Vec2 turned = rotate(unit(-0.5 * (n - 1) * s.spin), heading);
+    const Vec2 on = unit(s.spin);
+    fan.widen(0.5 * (n - 1) * s.spin);
     NormalDraws normal(s.draws());
     for (int i = 0; i < n; ++i) {
-      double error = s.spin * (i - 0.5 * (n - 1));
-      if (shaky) error += s.noise() * options.angle_std * normal(first_error + i);
+      Vec2 nominal{s.mount.cosine[i], s.mount.sine[i]};
+      if (shaky) {
+        const double error = s.noise() * options.angle_std * normal(first_error + i);
+        fan.widen(std::fabs(error) + std::fabs(0.5 * (n - 1) * s.spin));
+        nominal = unit(s.mount.angle[i] + error);
+      }
+      fan.aim(i, rotate(nominal, turned));
+      turned = rotate(turned, on);
+    }
+  } else if (shaky) {
+    NormalDraws normal(s.draws());
+    for (int i = 0; i < n; ++i) {
+      const double error = s.noise() * options.angle_std * normal(first_error + i);
       fan.widen(error);
       fan.aim(i, rotate(unit(s.mount.angle[i] + error), heading));
     }

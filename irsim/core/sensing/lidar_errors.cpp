@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kPulse = 0.05;           // ranges within a cone that differ by less are one echo [m]
 constexpr double kGlassIncidence = 0.17;  // largest incidence at which glass returns light [rad]
-constexpr std::uint64_t kEpisodeDraws = std::uint64_t{1} << 62;  // first of the draws that hold for an episode
 
 bool is_matt(const World& world, int object) { return world.material[object] == Material::matt; }
 
@@ -65,11 +64,12 @@ void follow_motion(const Sensing& s, const Fan& fan, Surface& surface) {
   for (int i = 0; i < s.mount.count; ++i) {
     const int hit = beams.hit[i];
     if (hit < 0) continue;
+    const Vec3& twist = s.state.twist[s.w * s.world.objects + hit];
+    const Vec2 apart = s.drift - Vec2{twist[0], twist[1]} * s.beam_time;
+    if (apart.x == 0.0 && apart.y == 0.0) continue;
     const Vec2 normal = surface.normal(fan, i);
     const double facing = dot(fan.beam(i), normal), after = i - 0.5 * (s.mount.count - 1);
     if (std::fabs(facing) < kGrazing) continue;
-    const Vec3& twist = s.state.twist[s.w * s.world.objects + hit];
-    const Vec2 apart = s.drift - Vec2{twist[0], twist[1]} * s.beam_time;
     beams.range[i] = std::max(0.0, beams.range[i] - dot(apart, normal) * after / facing);
   }
 }
@@ -114,20 +114,31 @@ void widen_beams(const LidarErrors& errors, const Sensing& s, const Fan& fan) {
   }
 }
 
-/// The range at which half of the beams are returned by a surface that throws back a share of their light [m].
-double detection_range(const LidarErrors& errors, const RangeLimits& limits, double share) {
-  constexpr double kDark = 0.1, kWhite = 0.9;
-  const double growth = std::log(limits.farthest / errors.range_dark) / std::log(kWhite / kDark);
-  return errors.range_dark * std::pow(share / kDark, growth);
-}
+/// Which surfaces return beams.
+class Detection {
+ public:
+  Detection(const LidarErrors& errors, const RangeLimits& limits)
+      : dark_(errors.range_dark),
+        fade_(errors.fade),
+        growth_(std::log(limits.farthest / errors.range_dark) / std::log(kWhite / kDark)) {}
 
-/// Whether a surface returns a beam.
-bool is_detected(const LidarErrors& errors, const RangeLimits& limits, double range, double share, double draw) {
-  if (!(errors.range_dark < limits.farthest)) return true;
-  const double ahead = detection_range(errors, limits, share) - range;
-  if (!(errors.fade > 0.0)) return ahead >= 0.0;
-  return draw < 1.0 / (1.0 + std::exp(-ahead / errors.fade));
-}
+  /// Whether a surface that throws back a share of the light returns a beam; `draw()` is a uniform draw.
+  template <class Draw>
+  bool operator()(double range, double share, Draw&& draw) const {
+    const double doubt = kWidths * fade_;
+    if (share >= kDark && range + doubt <= dark_) return true;
+    // The range at which half of the beams return grows with a power of the share.
+    const double ahead = dark_ * std::pow(share / kDark, growth_) - range;
+    if (std::fabs(ahead) >= doubt) return ahead >= 0.0;
+    return draw() < 1.0 / (1.0 + std::exp(-ahead / fade_));
+  }
+
+ private:
+  static constexpr double kDark = 0.1, kWhite = 0.9;  // reflectivities for which ranges are told
+  static constexpr double kWidths = 30.0;             // of the logistic curve, beyond which it is 0 or 1
+
+  double dark_, fade_, growth_;
+};
 
 /// A range that something unseen returns instead of the surface: exponential, and shorter than the way there [m].
 double cut_short(double rate, double range, double draw) {
@@ -162,17 +173,21 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
   if (s.earlier) follow_motion(s, fan, surface);
   if (errors.divergence > 0.0 && errors.rays > 1) widen_beams(errors, s, fan);
 
-  const Draws added = s.draws(1);
   NormalDraws normal(s.draws());
-  const double scale = 1.0 + errors.scale_std * added.normal(kEpisodeDraws);
-  const double bias = errors.bias_std * added.normal(kEpisodeDraws + 1);
+  UniformDraws choice(s.draws(1));
+  const Draws details = s.draws(2), episode = s.draws(3);
+  const double scale = 1.0 + errors.scale_std * episode.normal(0), bias = errors.bias_std * episode.normal(1);
   const double least_cosine = steep ? std::cos(errors.incidence_max) : 0.0;
   const double shorts = errors.dropout + errors.short_share, randoms = shorts + errors.random_share;
-  const bool draws = dim || randoms > 0.0;
-  const std::uint64_t first_block = s.scan_number() * static_cast<std::uint64_t>(s.all_beams) + s.first_beam;
+  const Detection detected(errors, limits);
+  const std::uint64_t first = s.scan_number() * static_cast<std::uint64_t>(s.all_beams) + s.first_beam;
   for (int i = 0; i < n; ++i) {
     int hit = beams.hit[i];
     bool returned = hit >= 0 && !(steep && beams.cosine[i] < least_cosine);
+    if (returned && dim) {
+      const double share = s.world.reflectivity[hit] * beams.cosine[i] * beams.power[i];
+      returned = detected(beams.range[i], share, [&] { return details.uniform(4 * (first + i)); });
+    }
     double range = limits.farthest;
     if (returned) {
       const double exact = beams.range[i], grown = errors.std_per_meter * exact;
@@ -180,18 +195,15 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
       range = std::max(0.0, scale * exact + bias);
       if (sigma > 0.0) range = std::max(0.0, range + s.noise() * sigma * normal(first_draw + i));
     }
-    if (draws) {
-      const std::array<double, 4> draw = added.uniforms(first_block + i);
-      if (returned && dim) {
-        const double share = s.world.reflectivity[hit] * beams.cosine[i] * beams.power[i];
-        returned = is_detected(errors, limits, beams.range[i], share, draw[2]);
-      }
-      if (draw[0] < errors.dropout) {
+    if (randoms > 0.0) {
+      const double outcome = choice(first + i);
+      if (outcome < errors.dropout) {
         returned = false;
-      } else if (draw[0] < shorts) {
-        if (returned) range = cut_short(errors.short_rate, range, draw[1]), hit = -1;
-      } else if (draw[0] < randoms) {
-        range = limits.nearest + draw[1] * (limits.farthest - limits.nearest), hit = -1, returned = true;
+      } else if (outcome < shorts) {
+        if (returned) range = cut_short(errors.short_rate, range, details.uniform(4 * (first + i) + 1)), hit = -1;
+      } else if (outcome < randoms) {
+        const double share = details.uniform(4 * (first + i) + 1);
+        range = limits.nearest + share * (limits.farthest - limits.nearest), hit = -1, returned = true;
       }
     }
     returned = returned && !is_blind(errors, s.mount.angle[i]);
