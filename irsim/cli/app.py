@@ -49,7 +49,7 @@ FILES_RULE = (
     "Files that exist: pictures, films, HTML pages and schemas are made again, and the line then says 'replaced'. All "
     "others, such as scenarios, maps, tables and policies, stay as they are unless --force is given."
 )
-"""What all commands do where the file to write exists."""
+"""How all commands treat a file that they are to write and that exists already."""
 PANELS = {
     "Start": ("demo", "templates", "new"),
     "Scenarios": ("validate", "diff", "render", "describe", "schema"),

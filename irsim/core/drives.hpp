@@ -1,4 +1,4 @@
-// What behaviors know of a drive, whatever its name.
+// Facts about a drive that behaviors use, whatever its name.
 #pragma once
 
 #include <optional>

@@ -32,7 +32,7 @@ struct Sensing {
   double beam_time = 0.0;             // time from beam to beam within the part [s]
   bool earlier = false;               // whether the moving objects are where `ghosts` has them
 
-  /// The draws of the sensor: lane 0 is the noise of ranges, directions and velocities; lanes 1 to 3 are those of
+  /// The draws of the sensor: lane 0 is the noise of ranges, directions and velocities; lanes 1 to 3 are for
   /// lidars with errors: what becomes of a beam, how, and what holds for an episode.
   Draws draws(std::uint64_t lane = 0) const {
     return Draws(state.key(w), sensor_stream(mount.index), world.number[mount.object], lane);

@@ -16,7 +16,7 @@ struct Car {
   double wheelbase;  // [m]
   double psi_max;    // largest steering angle [rad], may be infinite
   double acts;       // share of a period in which a commanded angle already acts; 0: the wheels turn at its end
-  bool front;        // whether the first control is the speed of the steered wheel, not that of the fixed axle
+  bool front;        // whether the first control is the speed of the steered wheel instead of the fixed axle
 
   /// Yaw rate times wheelbase per speed at a steering angle [1].
   double yaw(double psi) const { return front ? std::sin(psi) : std::tan(psi); }

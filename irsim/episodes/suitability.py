@@ -126,7 +126,7 @@ def _of_surroundings(card: SceneCard, scene: Scene) -> Iterator[Misfit]:
 
 
 def _in_the_way(scene: Scene) -> Iterator[Misfit]:
-    """What stands, or may stand, where a law that avoids nothing drives straight on."""
+    """Things that stand, or may stand, where a law that avoids nothing drives straight on."""
     what = ""
     if scene.has_map:
         what = seen = "a map"

@@ -40,23 +40,23 @@ def settings_asked(template: Template, question: str) -> tuple[dict[str, str], l
         Name of a parameter -> its value as in the question, and a sentence for each value out of range.
     """
     settings, misfits = dict[str, str](), list[str]()
-    for found in _NUMBER.finditer(question.lower()):
-        name = _parameter(template, found)
+    for number in _NUMBER.finditer(question.lower()):
+        name = _parameter(template, number)
         if name is None:
             continue
         try:
-            template.parameters[name].check(name, found["number"])
+            template.parameters[name].check(name, number["number"])
         except TemplateError as error:
             misfits.append(f"{error.message} Here {error.fix}")
         else:
-            settings[name] = found["number"]
+            settings[name] = number["number"]
     return settings, misfits
 
 
-def _parameter(template: Template, found: re.Match[str]) -> str | None:
+def _parameter(template: Template, number: re.Match[str]) -> str | None:
     """The parameter that the words beside a number name."""
-    unit = _UNITS.get((found["unit"] or "").removesuffix("s") if found["unit"] != "m/s" else "m/s")
-    for word in filter(None, (found["after"], found["before"])):
+    unit = _UNITS.get((number["unit"] or "").removesuffix("s") if number["unit"] != "m/s" else "m/s")
+    for word in filter(None, (number["after"], number["before"])):
         singular = words_of(_ADJECTIVES.get(word, word))
         usable = {name: one for name, one in template.parameters.items() if _has_unit(one, unit)}
         named = (name for name in usable if words_of(name) == singular)

@@ -102,7 +102,7 @@ class PerObject:
         kind: Kind of one value. ``value``: a single value or a vector. ``vector``: always a vector. ``number``: a
             number, so a list of numbers is one number per object. ``list``: a list of items. ``path``: a list of
             vectors.
-        per: What a list has one value for: each object of the entry, or each control.
+        per: The things of which a list has one value each: each object of the entry, or each control.
     """
 
     def __init__(

@@ -74,8 +74,8 @@ class Trace:
             run it has single precision.
         goal: (T, N, 3) present goal x, y [m], heading [rad]; NaN without a goal.
         arrived, collided, stopped: (T, N) flags.
-        command: (T, N, 3) what was commanded in the step that led to the row, of objects with ``actuation``; NaN for
-            others. None if no object has any, and in traces that are not of a recorded run.
+        command: (T, N, 3) what was commanded in the step that led to the row, of objects with ``actuation``, and
+            NaN of all other objects. None if no object has any, and in traces that are not of a recorded run.
         ranges: (T, B) ranges [m] of each sensor, infinite for a beam that hit nothing. The keys are ``<object
             name>/<number of the sensor among the native sensors of the object>``. Empty if scans were not recorded; a
             recorded run has fewer than T rows if it was too large to store all of them.

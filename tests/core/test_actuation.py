@@ -227,7 +227,7 @@ def test_a_late_start_begins_at_rest() -> None:
 
 @pytest.mark.parametrize("drive", DRIVES)
 def test_every_drive_moves_by_the_executed_control(drive: str) -> None:
-    """The pose is that of an object without actuators that is commanded what this one executes."""
+    """An object without actuators that is commanded what this one executes has the same pose."""
     start = {"drive": DRIVES[drive], "pose": [1.0, 2.0, 0.3], "behavior": None}
     world, state = scene(robot(actuation=actuation(**ALL), **start, acce=[2.0, 3.0, 3.0]), seeds=[4])
     plain, other = scene(robot(**start, vel_min=[-9.0] * 3, vel_max=[9.0] * 3))

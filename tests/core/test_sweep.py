@@ -91,7 +91,7 @@ def test_others_are_seen_where_they_were() -> None:
 
 
 def test_noise_of_a_swept_scan_is_that_of_all_its_beams() -> None:
-    """Beams of all parts draw different numbers, which are those of a scan that takes no time."""
+    """Beams of all parts draw different numbers, the same as in a scan that takes no time."""
     for make in (lidar, fmcw):
         scans = []
         for realism in (core.LidarErrors(**{**OFF, "dropout": 0.2}), swept(8, dropout=0.2)):

@@ -93,7 +93,7 @@ def test_a_recorded_run_knows_what_was_commanded(workspace: Path) -> None:
 
 
 def test_contacts_take_the_lag_of_actuators(make: Callable[..., Any]) -> None:
-    """In `collision_mode: contact` the lag of `actuation` is exact, that of `tau` dt / tau."""
+    """In `collision_mode: contact` the lag of `actuation` is exact, and `tau` takes dt / tau."""
     still = {
         "behavior: {name: dash}": "behavior: null",
         "acce: [3.0, 3.0], ": "",

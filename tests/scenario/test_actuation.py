@@ -40,21 +40,21 @@ def test_values_out_of_place_are_errors(options: dict[str, Any], code: str, path
 
 
 def test_a_list_for_one_control_is_mended_to_a_number() -> None:
-    [found] = [d for d in read(robot(actuation={"lag": [0.2]}), strict=True).diagnostics if d.severity == "error"]
-    assert found.message == "'lag' of 'diff' must be one number, or a list of 2 (linear, angular), got 1"
-    assert found.fix == "lag: 0.2"
+    [problem] = [d for d in read(robot(actuation={"lag": [0.2]}), strict=True).diagnostics if d.severity == "error"]
+    assert problem.message == "'lag' of 'diff' must be one number, or a list of 2 (linear, angular), got 1"
+    assert problem.fix == "lag: 0.2"
 
 
 def test_a_wrong_name_is_told_the_right_one() -> None:
-    [found] = [d for d in read(robot(actuation={"latency": 0.2}), strict=True).diagnostics if d.severity == "error"]
-    assert found.fix == "rename it to 'delay'"
+    [problem] = [d for d in read(robot(actuation={"latency": 0.2}), strict=True).diagnostics if d.severity == "error"]
+    assert problem.fix == "rename it to 'delay'"
 
 
 def test_a_lag_given_twice_is_an_error_with_its_fix() -> None:
     twice = robot(**TAU, actuation={"lag": 0.2})
-    [found] = [d for d in read(twice, strict=True).diagnostics if d.severity == "error"]
-    assert (found.code, found.fix) == ("lag-twice", "remove 'tau', or this lag")
-    assert "'tau' of its kinematics is 0.1" in found.message
+    [problem] = [d for d in read(twice, strict=True).diagnostics if d.severity == "error"]
+    assert (problem.code, problem.fix) == ("lag-twice", "remove 'tau', or this lag")
+    assert "'tau' of its kinematics is 0.1" in problem.message
     everywhere = {"world": {"drive_tau": 0.3}, **robot(actuation={"lag": [0.0, 0.2]})}
     assert "error lag-twice robot[0].actuation.lag" in findings(everywhere)
     for fine in (

@@ -23,12 +23,12 @@ class Preset:
 
 
 def filled(data: Any, key: str, usual: str, presets: Mapping[str, Preset]) -> Any:
-    """The keys of a drive with those that are not given, or null, from the preset that it names.
+    """The keys of a drive; the preset that it names fills in keys that are missing or null.
 
     Args:
         data: The mapping as given.
         key: Key with the name of the preset.
-        usual: Name of the preset if the mapping has none.
+        usual: Name of the preset if the mapping names no other.
         presets: The presets by name.
     """
     if not isinstance(data, Mapping):

@@ -37,9 +37,9 @@ class SkidSteer(KinematicsOptions):
     """Robot whose numbers the keys below have that are not given: Pioneer 3-AT as measured (Wang et al., Sensors 2015),
     Jackal and Husky as their maker calibrates them."""
     believed_track: Annotated[Meters, Field(gt=0)] | None = None
-    """Distance of both sides with which the controller works; null is that of the preset."""
+    """Distance of both sides with which the controller works; null takes it from the preset."""
     icr_left: Annotated[Meters, Field(gt=0)] | None = None
-    """Where the left side has its ICR, to the left of the reference point; null is that of the preset."""
+    """Where the left side has its ICR, to the left of the reference point; null takes it from the preset."""
     icr_right: Annotated[Meters, Field(lt=0)] | None = None
     """The same of the right side, a negative number."""
     icr_ahead: Meters = 0.0
@@ -49,7 +49,7 @@ class SkidSteer(KinematicsOptions):
     traction_right: Annotated[Number, Field(gt=0, le=2)] = 1.0
     """The same of the right side."""
     speed_max: Annotated[MetersPerSecond, Field(gt=0)] | None = None
-    """Largest speed of a side; faster commands are slowed in proportion. Null is no limit."""
+    """Largest speed of a side; faster commands are slowed in proportion. Null is unlimited."""
 
     @model_validator(mode="before")
     @classmethod

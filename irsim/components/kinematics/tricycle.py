@@ -44,9 +44,9 @@ class Tricycle(KinematicsOptions):
     psi_max: Annotated[Radians, Field(gt=0, le=math.pi / 2)] = math.pi / 2
     """Largest steering angle, at most a quarter turn."""
     steer_rate: Annotated[RadiansPerSecond, Field(gt=0)] | None = None
-    """Largest rate of the steering angle; null is no limit."""
+    """Largest rate of the steering angle; null is unlimited."""
     steer_acce: Annotated[RadiansPerSecondSquared, Field(gt=0)] | None = None
-    """Largest change of that rate; null is no limit."""
+    """Largest change of that rate; null is unlimited."""
     steer_lag: Annotated[Seconds, Field(ge=0)] = 0.0
     """Time constant with which the angle approaches the commanded one; in mode `angular` the rate its own."""
 

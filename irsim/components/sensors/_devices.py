@@ -1,7 +1,7 @@
 """Lidars that one can buy: the values of the key ``device``.
 
-Each number has a source. A number that nobody has compared with its source yet is unverified: it is common knowledge,
-and the data sheet was not opened. A tolerance of the maker (plus or minus) is taken for two standard deviations.
+Each number has a source. A number that was not compared with its source yet is unverified: it is common knowledge, and
+the data sheet was not opened. A tolerance of the maker (plus or minus) is taken for two standard deviations.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Source:
 
     Attributes:
         text: Document, and what it says.
-        read: When somebody opened it; None if nobody did, which makes its numbers unverified.
+        read: Time at which it was opened; None if it was not, which makes its numbers unverified.
     """
 
     text: str
@@ -38,7 +38,7 @@ class Device:
 
     Attributes:
         title: Maker and type.
-        keys: Keys of the lidar; those of ``realism`` are ``realism.KEY``.
+        keys: Keys of the lidar; a key of ``realism`` is written ``realism.KEY``.
         sources: Key -> source of its number.
     """
 
@@ -48,7 +48,7 @@ class Device:
 
     @property
     def unverified(self) -> list[str]:
-        """Keys whose numbers nobody has compared with their source, in the order of ``keys``."""
+        """Keys whose numbers were not compared with their source, in the order of ``keys``."""
         return [key for key in self.keys if self.sources[key].read is None]
 
     def options(self) -> dict[str, Any]:

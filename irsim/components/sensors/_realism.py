@@ -22,7 +22,7 @@ class LidarRealism(Options):
     """How the ranges of a lidar differ from exact ones; each key is off unless it is given.
 
     Draws are seeded, and `noise`, `std` and `angle_std` of the lidar work beside them. A beam that nothing returns
-    reads `range_max` and is not valid. What surfaces return depends on `reflectivity` and `material` of objects.
+    reads `range_max` and is not valid. Surfaces return light by `reflectivity` and `material` of their object.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
@@ -62,7 +62,7 @@ class LidarRealism(Options):
     rays: Annotated[Integer, Field(ge=2, le=9)] = 3
     """Rays that stand for the cone, for `divergence`."""
     mixed: Literal["mean", "nearest", "farthest"] = "mean"
-    """What a beam reads whose cone meets surfaces more than 5 cm apart: a range between them, weighted by the light
+    """The reading of a beam whose cone meets surfaces more than 5 cm apart: a range between them, weighted by the light
     that comes back (a mixed pixel), the nearest or the farthest."""
 
     sweep: Bool = False

@@ -88,7 +88,7 @@ void Raster::cut_edge(Vec2 from, Vec2 to) {
 
 void Raster::inner_edge(double x0, double y0, double x1, double y1) {
   if (y0 == y1) return;
-  // Edges run up and down by turns, so branches would often be foreseen wrongly; these are none.
+  // Edges run up and down by turns, so branches would often be foreseen wrongly; selections are not foreseen.
   const bool down = y0 < y1;
   const float direction = down ? 1.0f : -1.0f;
   const double from = down ? x0 : x1, to = down ? x1 : x0;

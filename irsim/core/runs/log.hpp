@@ -59,7 +59,7 @@ struct Log {
   void clear();
 
   std::vector<int> movers;     // objects whose pose and control are recorded
-  std::vector<int> commanded;  // those of them whose commands pass through actuators, and are recorded, too
+  std::vector<int> commanded;  // movers whose commands pass through actuators, and are recorded, too
   int objects, columns;        // `columns`: recorded numbers of each control
   bool scans;
   std::size_t beams;

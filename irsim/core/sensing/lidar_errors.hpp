@@ -11,7 +11,7 @@
 
 namespace irsim {
 
-/// What a beam reads whose cone meets surfaces at different ranges.
+/// The reading of a beam whose cone meets surfaces at different ranges.
 enum class Mixed { mean, nearest, farthest };
 
 struct LidarErrors {

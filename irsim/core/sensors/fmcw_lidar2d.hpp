@@ -42,7 +42,7 @@ inline int sweep_parts(const FmcwLidar2dOptions& options) {
   return options.realism && options.realism->beam_time > 0.0 ? options.realism->segments : 1;
 }
 
-/// Write the radial velocities of hits; other beams have none. The noise of beam i is the normal draw `first + i`.
+/// Write the radial velocities of hits; other beams read 0. The noise of beam i is the normal draw `first + i`.
 inline void write_radial_velocities(const FmcwLidar2dOptions& options, const Sensing& s, const Fan& fan,
                                     std::uint64_t first) {
   NormalDraws error(s.draws());

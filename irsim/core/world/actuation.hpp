@@ -35,11 +35,11 @@ struct Actuators {
   double period = 0.0;     // steps for which a command is held
   Vec3 delay;              // steps from a command to its effect
   bool noisy = false;      // whether any control is
-  std::size_t first = 0;   // slot of its queue among those of a world
+  std::size_t first = 0;   // slot of its queue among the queues of a world
   std::int64_t slots = 0;  // commands that its queue holds; 0 without a dead time
 };
 
-/// What the actuators of one row keep from step to step.
+/// The memory of the actuators of one row from step to step.
 struct Actuated {
   Vec3 held;      // command of the present period
   Vec3 setpoint;  // control within its limits, before the lag

@@ -59,8 +59,8 @@ struct BodyDynamics {
   bool pushable;       // whether it is not static, has a finite mass, and is not an obstacle that replays a recording
 };
 
-/// What the surface of an object does with the light of a lidar: throw it in all directions, let it pass unless it
-/// comes from ahead, or throw it in one direction.
+/// A surface throws the light of a lidar in all directions, lets it pass unless it comes from ahead, or throws it in
+/// one direction.
 enum class Material : std::uint8_t { matt, glass, mirror };
 
 /// Which contacts are collisions: those at the ends of steps, or those within steps, too.

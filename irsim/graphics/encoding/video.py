@@ -121,7 +121,7 @@ class VideoWriter:
 
 
 def _ffmpeg(suffix: str) -> str:
-    """The program: that of the package imageio-ffmpeg, which everybody can install, before one on the path.
+    """The program of the package imageio-ffmpeg, or else one on the path.
 
     Raises:
         ExtraError: There is neither.
@@ -130,11 +130,11 @@ def _ffmpeg(suffix: str) -> str:
         from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped]
 
         return str(get_ffmpeg_exe())
-    found = shutil.which("ffmpeg")
-    if found is None:
-        fix = "install the extra: pip install 'irsim-mcp[video]'; or write a .gif, which needs none"
+    program = shutil.which("ffmpeg")
+    if program is None:
+        fix = "install the extra: pip install 'irsim-mcp[video]'; or write a .gif, which needs no encoder"
         raise ExtraError("missing-extra", f"videos such as {suffix} need ffmpeg, which is not installed", fix)
-    return found
+    return program
 
 
 def _quality_arguments(codec: str, quality: float) -> list[str]:

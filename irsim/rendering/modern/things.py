@@ -39,7 +39,7 @@ class Thing:
 
     Attributes:
         number: Id of the object.
-        record: What the scenario says of it.
+        record: Its entry of the scenario.
         color: Its colour, from which its shades are.
         is_round: Whether its body is a disc about its position.
         mark: The mark of its body, with its true footprint; None for one that is drawn as an image or not at all.

@@ -45,7 +45,7 @@ PerControl = Finite | Annotated[list[Finite], Field(max_length=64)]
 
 
 class ActuationFacts(BaseModel):
-    """What makes executed controls differ from controls within the limits."""
+    """Reasons why executed controls differ from controls within the limits."""
 
     dead_band: PerControl = 0.0
     noise: PerControl = 0.0

@@ -1,4 +1,4 @@
-"""What lies between a command and the control that a drive executes."""
+"""The way from a command to the control that a drive executes."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ Jerk = Annotated[Number, Field(gt=0, le=1e9, json_schema_extra={"x-unit": "contr
 
 
 class Actuation(Options):
-    """What happens to commands before the drive executes them; each key is off unless it is given.
+    """The way of commands to the drive that executes them; each key is off unless it is given.
 
     Commands pass, in this order: `command_period`, `delay`, `resolution`, the limits `vel_min`, `vel_max` and `acce` of
-    the object with `jerk`, `lag`, `dead_band`, `noise`. What comes out is the executed control, which sensors,
+    the object with `jerk`, `lag`, `dead_band`, `noise`. At the end is the executed control, which sensors,
     behaviors, policies and recorded runs see. Values are one number for all controls, or a list with one per control,
     in the order of `vel_max`. An object without a command in a step is commanded to stop.
     """

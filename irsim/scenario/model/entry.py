@@ -155,7 +155,7 @@ class Entry(Options):
     acce: Annotated[Any, PerObject(Rates | None, "vector")] = None
     """Largest change of each control component per second; null is unlimited."""
     actuation: Annotated[Any, PerObject(Actuation | None)] = None
-    """What happens to commands before the drive executes them, in this order: `command_period`, `delay`, `resolution`,
+    """The way of commands to the drive that executes them, in this order: `command_period`, `delay`, `resolution`,
     limits with `jerk`, `lag`, `dead_band`, `noise`. Null executes them at once, within `vel_min`, `vel_max` and `acce`.
     """
     angle_range: Annotated[Any, PerObject(Range | None, "vector")] = None
@@ -178,7 +178,7 @@ class Entry(Options):
     reflectivity: Fraction | None = None
     """Share of the light of a lidar that the surface throws back, for lidars with `realism`; null is 0.8."""
     material: Literal["matt", "glass", "mirror"] = "matt"
-    """What the surface does with the light of lidars with `realism`: `glass` returns beams that meet it within 10
+    """How the surface treats the light of lidars with `realism`: `glass` returns beams that meet it within 10
     degrees of straight ahead and lets others pass, a `mirror` shows what it reflects, `matt` throws light in all
     directions."""
     fov: SpanAngle | None = None

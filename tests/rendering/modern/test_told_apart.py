@@ -1,4 +1,4 @@
-"""The style `modern`: robots are told apart, and those that collided are counted."""
+"""The style `modern`: robots are told apart, and robots that collided are counted."""
 
 from __future__ import annotations
 
