@@ -34,7 +34,7 @@ EVERYDAY: dict[str, str] = {
     "robot.kinematics.tricycle": "three wheels, three-wheeler, forklift, pallet truck, steered drive wheel, dreirad, "
     "front wheel drive, triciclo",
     "robot.kinematics.diff": "differential, differential drive, diff drive, unicycle, turtlebot, two wheels",
-    "robot.kinematics.skid_steer": "skid steer, skid-steer, tank, tracks, tracked, crawler, caterpillar, four-wheeled, "
+    "robot.kinematics.skid_steer": "skid steer, tank, tracks, tracked, crawler, caterpillar, four-wheeled, "
     "jackal, husky, pioneer, slip, slippery, raupe, kettenfahrzeug, oruga",
     "robot.kinematics.omni": "omnidirectional, holonomic, mecanum, omni wheels, omniwheel, swerve, point mass",
     "robot.kinematics.omni_angular": "omnidirectional, holonomic, mecanum, turn in place",
