@@ -209,6 +209,9 @@ OTHER: dict[str, Any] = {
     "vel_min": [-0.5, -0.5],
     "vel_max": [0.5, 0.5],
     "acce": [0.5, 0.5],
+    "actuation": {"lag": 0.2},
+    "reflectivity": 0.1,
+    "material": "glass",
     "angle_range": [0, 6.283185307],
     "goal_threshold": 0.3,
     "arrive_mode": "state",
@@ -229,7 +232,7 @@ NO_EFFECT = {
     ("robot", 2): {"group_behavior"},
     ("obstacle", 0): {
         "goal", "waypoints", "group_behavior", "group", "vel_min", "vel_max", "acce", "angle_range", "vel_dim",
-        "start_time",
+        "start_time", "actuation",
     },
 }  # fmt: skip
 """Only the first of a group leads it; what never moves follows no object, and has no goals or limits."""

@@ -172,7 +172,6 @@ def test_json(irsim: Run) -> None:
         ("drone", "drone: only one that keeps its height"),
         ("3D", "limits: what cannot be simulated"),
         ("stagger", "limits: what cannot be simulated"),
-        ("delay", "limits: what cannot be simulated"),
         ("trap", "dead-ends: traps"),
         ("U-shape", "dead-ends: traps"),
         ("local minimum", "dead-ends: traps"),

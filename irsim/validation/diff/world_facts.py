@@ -30,6 +30,7 @@ _WORLD = (
 _RECORD = (
     "role", "group", "static", "unobstructed", "goal_threshold", "arrive_mode", "wander", "loop", "target_roles",
     "tags", "fov", "fov_radius", "fov_occlusion", "watches", "wheelbase", "color", "description",
+    "reflectivity", "material",
 )  # fmt: skip
 _POSE = ("x", "y", "theta")
 _CONTACT_WORLD = ("gravity",)
@@ -103,6 +104,7 @@ def _object(view: ObjectView, led: Mapping[int, tuple[Any, list[int]]], contact:
     if not record.static:
         facts |= {key: _plain(getattr(view, key)[:, 0]) for key in ("vel_min", "vel_max", "acce")}
         facts["angle_range"] = _plain(list(record.angle_range))
+        facts["actuation"] = _options(record.actuation)
         if record.start_time:
             facts["start_time"] = _plain(record.start_time)
         facts |= {"behavior": _options(record.behavior), "group_behavior": _options(group_behavior)}
