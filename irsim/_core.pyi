@@ -450,6 +450,81 @@ class FmcwLidar2dOptions(_Options):
         realism: LidarErrors | None,
     ) -> None: ...
 
+class OdometryOptions(_Options):
+    def __init__(
+        self,
+        *,
+        track: float,
+        wheel_radius: float,
+        ticks_per_turn: int,
+        diameter_error: float,
+        track_error: float,
+        scale_error: float,
+        diameter_std: float,
+        track_std: float,
+        scale_std: float,
+        distance_noise: float,
+        heading_noise: float,
+        turning_noise: float,
+    ) -> None: ...
+
+class ImuOptions(_Options):
+    def __init__(
+        self,
+        *,
+        offset: Sequence[float],
+        gyro_noise: float,
+        gyro_bias_std: float,
+        gyro_drift_std: float,
+        gyro_drift_time: float,
+        gyro_scale_std: float,
+        gyro_resolution: float,
+        gyro_range: float,
+        accel_noise: float,
+        accel_bias_std: float,
+        accel_drift_std: float,
+        accel_drift_time: float,
+        accel_scale_std: float,
+        accel_resolution: float,
+        accel_range: float,
+        misalignment_std: float,
+        tilt_std: float,
+    ) -> None: ...
+
+class GnssOptions(_Options):
+    def __init__(
+        self,
+        *,
+        offset: Sequence[float],
+        std: float,
+        drift_std: float,
+        drift_time: float,
+        rtk: bool,
+        fixed_std: float,
+        fixed_time: float,
+        float_std: float,
+        float_time: float,
+        blocked: Sequence[int],
+        reflecting: Sequence[int],
+        reflection: float,
+    ) -> None: ...
+
+class LocalizationOptions(_Options):
+    def __init__(
+        self,
+        *,
+        position_std: float,
+        heading_std: float,
+        time: float,
+        min_distance: float,
+        min_turn: float,
+        distance_noise: float,
+        heading_noise: float,
+        turning_noise: float,
+        jumps_per_km: float,
+        jump_std: float,
+    ) -> None: ...
+
 # shapes (core/shapes/): body frame
 class Circle:
     radius: float
@@ -827,6 +902,9 @@ class World:
     def velocity_slices(self) -> list[tuple[int, int]]:
         """(first, rows) of each native sensor: it has rows x beams velocities from index `first` of its world."""
     velocities_per_world: int
+    def gauges(self) -> list[tuple[int, int, int]]:
+        """(object, first, number) of each sensor without beams: its readings, from index `first` of its world."""
+    readings_per_world: int
 
 class State:
     """What changes during an episode: poses, controls, goals, flags, scans, counters, random keys.
@@ -887,6 +965,7 @@ class State:
     hits: NDArray[np.int32]  # same length: index within its world of the object hit by each beam, -1 without a hit
     valid: Flags  # same length: 1 where the beam hit something at a (noisy) range within [range_min, range_max]
     beam_angles: Floats  # same length: nominal angle of each beam in the sensor frame
+    readings: Floats  # (W * readings_per_world,) numbers of sensors without beams, see World.gauges
     velocities: Floats  # (W * velocities_per_world,) measured velocities [m/s], see World.velocity_slices
     explored: Flags  # (W, columns, rows) 1 where the fog is cleared; (W, 0, 0) without fog
     count: NDArray[np.int64]  # (W,) executed steps of the episode

@@ -3,7 +3,11 @@
 //   void                 NAME(options, sensing)  one scan into sensing.ranges, hits, valid (and velocities)
 //   std::vector<double>  beams(options)          nominal beam angles, sensor frame
 //   int                  velocity_rows(options)  numbers per beam in sensing.velocities; optional, 0 by default
+//   int                  readings(options)       numbers in sensing.readings, of sensors without beams; optional, 0
+//   int                  memory(options)         numbers in sensing.memory, which last from step to step; optional, 0
 #pragma once
+
+#include <type_traits>
 
 #include "world/state.hpp"
 #include "world/workspace.hpp"
@@ -22,6 +26,8 @@ struct Sensing {
   std::int32_t* hits;             // (mount.count,) object id or -1
   std::uint8_t* valid;            // (mount.count,) 1: a hit within [range_min, range_max]
   double* velocities;             // (velocity_rows, mount.count) [m/s]
+  double* readings;               // (mount.readings,)
+  double* memory;                 // (mount.memory,)
   const Vec2* object_velocities;  // (N,) world frame [m/s]; null when no sensor of the world has velocity rows
   BeamBuffers &buffers, &spare;
   const std::vector<Mount>& parts;    // beams that are cast one part after the other; empty: all at once
@@ -55,6 +61,31 @@ struct Sensing {
 template <class Options>
 int velocity_rows(const Options&) {
   return 0;
+}
+
+template <class Options>
+int readings(const Options&) {
+  return 0;
+}
+
+template <class Options>
+int memory(const Options&) {
+  return 0;
+}
+
+template <class Options, class = void>
+struct HasOffset : std::false_type {};
+template <class Options>
+struct HasOffset<Options, std::void_t<decltype(Options::offset)>> : std::true_type {};
+
+/// Pose of a sensor in the body frame [m, m, rad].
+template <class Options>
+std::array<double, 3> mounted_at(const Options& options) {
+  if constexpr (HasOffset<Options>::value) {
+    return options.offset;
+  } else {
+    return {};
+  }
 }
 
 /// Number of parts of a scan that are cast one after the other while the sensor moves; 1: all beams at once.

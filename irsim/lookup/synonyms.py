@@ -17,7 +17,15 @@ EVERYDAY: dict[str, str] = {
     "bridges.carla": "town, autonomous driving simulator, unreal",
     "robot.behavior.replay": "replay, recorded pedestrians, recorded trajectory, trajectory file, csv, eth ucy, "
     "data set of people",
-    "robot.sensors.lidar2d": "lidar, laser, laser scanner, scanner, lidar scanner, range finder, rangefinder, ladar, "
+    "robot.sensors.odometry": "odometry, odometer, wheel encoder, encoder, wheel odometry, dead reckoning, odom, "
+    "drift, odometrie, odometría, 里程计",
+    "robot.sensors.imu": "imu, accelerometer, gyroscope, gyro, inertial sensor, inertial measurement unit, "
+    "beschleunigungssensor, acelerómetro, 惯性",
+    "robot.sensors.gnss": "gnss, gps, satellite navigation, satellite, rtk, galileo, glonass",
+    "robot.sensors.localization": "localization, localisation, slam, amcl, pose estimate, estimated pose, "
+    "map frame, 定位",
+    "robot.sensors.lidar2d": "lidar, lidar sensor, laser, laser scanner, scanner, lidar scanner, "
+    "range finder, rangefinder, ladar, "
     "720, 720 beams, 1080 beams, 360 beams, distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range"
     ", laserscanner, abstandssensor, láser, escáner láser, 激光雷达, 激光",
     "robot.sensors.fmcw_lidar2d": "lidar, fmcw, fmcw lidar, doppler, radar, velocity lidar, radial velocity",

@@ -135,18 +135,6 @@ THINGS: dict[str, Guide] = {
             *("brazo robótico", "pinza", "机械臂", "抓取"),
         ),
     ),
-    "odometry": Guide(
-        "poses are exact; noise makes the motion differ from the command",
-        f"{NO} odometry, wheel encoders or localization: scripts and policies see the true pose (robot.state). Nearest "
-        "is noise of the kinematics, so that the motion differs from the command, and a lidar for a localization of "
-        "your own; a bridge to ROS publishes the true pose as /odom.",
-        "robot: {kinematics: {name: diff, noise: true}, state: [2, 2, 0], goal: [8, 5],\n"
-        "        sensors: [{name: lidar2d, noise: true}]}",
-        (
-            *("odometer", "wheel encoder", "encoder", "dead reckoning", "localization"),
-            *("localisation", "slam", "amcl", "odometrie", "odometría", "里程计", "定位"),
-        ),
-    ),
     "camera": Guide(
         "no images; a field of view, or a lidar",
         f"{NO} cameras and images: sensors are planar lidars. Nearest: fov of an object says whom it sees, with "
@@ -158,24 +146,12 @@ THINGS: dict[str, Guide] = {
             *("object detection", "point cloud", "kamera", "tiefenkamera", "cámara", "相机", "摄像头", "深度相机"),
         ),
     ),
-    "imu": Guide(
-        "no IMU, GPS or compass; the true motion is known",
-        f"{NO} inertial sensors, satellite navigation or compass: robot.state and robot.velocity are exact. Nearest: "
-        "add noise to them in your program, from env.rng, which the seed repeats.",
-        None,
-        (
-            *("gps", "gnss", "compass", "magnetometer", "accelerometer", "gyroscope", "gyro", "inertial sensor"),
-            *(
-                "barometer",
-                "altimeter",
-                "kompass",
-                "beschleunigungssensor",
-                "acelerómetro",
-                "brújula",
-                "惯性",
-                "陀螺仪",
-            ),
-        ),
+    "compass": Guide(
+        "no compass and no barometer; the heading is known, or estimated",
+        f"{NO} compass, magnetometer or barometer. Nearest: localization reports a heading with errors, imu a yaw "
+        "rate, odometry the heading that wheels add up to; robot.state has the true one.",
+        "robot: {sensors: [{name: localization}, {name: imu, device: adis16448}]}",
+        ("magnetometer", "barometer", "altimeter", "kompass", "brújula"),
     ),
     "elevator": Guide(
         "there is one flat floor",

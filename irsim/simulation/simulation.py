@@ -51,6 +51,7 @@ class Simulation:
         pace: (R,) factor on the speeds of an object; 1 unless the scenario is perturbed.
         start_step: (R,) steps for which an object stands still at its start. appeared: -1 while it is not in the world.
         scans: (owner, first beam, number of beams) of each native sensor of a world.
+        gauges: (owner, first reading, number of readings) of each sensor without beams of a world.
         velocity_slices: (first row, number of rows) of each native sensor in the measured velocities.
         between_steps: (R,) number of contacts of the episode between two steps, in which the object touched something
             that it touched at neither end of the step.
@@ -120,10 +121,9 @@ class Simulation:
         self.arrived, self.collided, self.stopped = state.arrived, state.collided, state.stopped
         self.goal, self.radius = state.goal, state.radius
         self.pace, self.start_step, self.appeared = state.pace, state.start_step, state.appeared
-        self.infeasible, self.count = state.infeasible, state.count
-        self.between_steps = state.between_steps
+        self.infeasible, self.count, self.between_steps = state.infeasible, state.count, state.between_steps
         self.ranges, self.hits, self.valid = state.ranges, state.hits, state.valid
-        self.scans, self.velocity_slices = world.scans(), world.velocity_slices()
+        self.scans, self.velocity_slices, self.gauges = world.scans(), world.velocity_slices(), world.gauges()
         self._first_scan: dict[int, int] = {}
         for number, (owner, _, _) in enumerate(self.scans):
             self._first_scan.setdefault(owner, number)

@@ -13,12 +13,9 @@ from irsim.scenario.locate import locate
 @pytest.mark.parametrize(
     ("asked", "nearest"),
     [
-        ("odometry", "noise"),
-        ("wheel encoder", "noise"),
         ("camera", "lidar2d"),
         ("depth camera", "fov"),
-        ("IMU", "robot.state"),
-        ("GPS", "robot.state"),
+        ("compass", "robot.state"),
         ("legs", "omni_angular"),
         ("gripper", "world.collision_mode: contact"),
         ("drone", "omni"),
@@ -31,6 +28,25 @@ def test_what_irsim_lacks_leads_to_the_limits_and_the_nearest_thing(asked: str, 
     assert "irsim has no" in answer.text
     assert nearest in answer.text
     assert "limits" in answer.see
+
+
+@pytest.mark.parametrize(
+    ("asked", "sensor"),
+    [
+        ("wheel encoder", "odometry"),
+        ("odometry", "odometry"),
+        ("IMU", "imu"),
+        ("GPS", "gnss"),
+        ("amcl", "localization"),
+    ],
+)
+def test_what_irsim_has_by_now_leads_to_it(asked: str, sensor: str) -> None:
+    answer = lookup(asked)
+    assert f"robot.sensors.{sensor}" in (
+        answer.topic,
+        *(key.name for keys in answer.groups.values() for key in keys),
+        *answer.see,
+    )
 
 
 def test_space_is_a_limit() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from irsim.components.sensors._gauges import GaugeOptions
 from irsim.options.registry import BEHAVIORS, REGISTRIES, SENSORS, SHAPES, Feature
 from irsim.testing import conformance
 
@@ -66,7 +67,18 @@ def test_shape(shape: str) -> None:
         conformance.check_finite(shape=example, sensor="{name: lidar2d, number: 20}")
 
 
-@pytest.mark.parametrize("sensor", [s.name for s in SENSORS.features() if s.kernel is not None])
+GAUGES = [s.name for s in SENSORS.features() if issubclass(s.options, GaugeOptions)]
+
+
+@pytest.mark.parametrize("sensor", GAUGES)
+def test_gauge(sensor: str) -> None:
+    conformance.check_same_seed(sensor=f"{{name: {sensor}}}")
+    conformance.check_finite(sensor=f"{{name: {sensor}}}")
+
+
+@pytest.mark.parametrize(
+    "sensor", [s.name for s in SENSORS.features() if s.kernel is not None and s.name not in GAUGES]
+)
 def test_sensor(sensor: str) -> None:
     noisy = f"{{name: {sensor}, number: 15, noise: true}}"
     conformance.check_same_seed(sensor=noisy)

@@ -54,6 +54,14 @@ void bind_world(nb::module_& m) {
                out.emplace_back(scan.mount.object, scan.mount.first, scan.mount.count);
              return out;
            })
+      .def_ro("readings_per_world", &World::readings_per_world)
+      .def("gauges",
+           [](const World& world) {
+             std::vector<std::tuple<int, int, int>> out;
+             for (const Scan& gauge : world.gauges)
+               out.emplace_back(gauge.mount.object, gauge.mount.first_reading, gauge.mount.readings);
+             return out;
+           })
       .def("velocity_slices", [](const World& world) {
         std::vector<std::tuple<int, int>> out;
         for (const Scan& scan : world.scans) out.emplace_back(scan.mount.first_velocity, scan.mount.velocity_rows);

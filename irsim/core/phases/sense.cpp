@@ -12,23 +12,26 @@ void scan(const World& world, State& state, int w, const Scan& sensor, const Pos
   const Mount& mount = sensor.mount;
   const std::size_t at = static_cast<std::size_t>(w) * world.beams_per_world + mount.first;
   const std::size_t velocities = static_cast<std::size_t>(w) * world.velocities_per_world + mount.first_velocity;
-  const Sensing sensing{world,
-                        state,
-                        w,
-                        mount,
-                        pose,
-                        direction,
-                        state.ranges.data + at,
-                        state.hits.data + at,
-                        state.valid.data + at,
-                        state.velocities.data + velocities,
-                        work.velocities.data(),
-                        work.beams,
-                        work.blockers,
-                        sweeping ? sensor.parts : kAtOnce,
-                        work.ghost,
-                        0,
-                        mount.count};
+  const Sensing sensing{
+      world,
+      state,
+      w,
+      mount,
+      pose,
+      direction,
+      state.ranges.data + at,
+      state.hits.data + at,
+      state.valid.data + at,
+      state.velocities.data + velocities,
+      state.readings.data + static_cast<std::size_t>(w) * world.readings_per_world + mount.first_reading,
+      state.memory.data() + static_cast<std::size_t>(w) * world.memory_per_world + mount.first_memory,
+      work.velocities.data(),
+      work.beams,
+      work.blockers,
+      sweeping ? sensor.parts : kAtOnce,
+      work.ghost,
+      0,
+      mount.count};
   with(sensor.sensor, [&](const auto& options) { run(options, sensing); });
 }
 
@@ -45,6 +48,10 @@ void sense(const World& world, State& state, int w, Workspace& work) {
   for (const Scan& sensor : world.scans) {
     const int row = w * world.objects + sensor.mount.object;
     scan(world, state, w, sensor, state.pose[row], state.heading(row), work, state.count[w] > 0);
+  }
+  for (const Scan& gauge : world.gauges) {
+    const int row = w * world.objects + gauge.mount.object;
+    scan(world, state, w, gauge, state.pose[row], state.heading(row), work, false);
   }
   if (world.fog && state.count[w] > 0) lift_fog(world, state, w, work);
 }

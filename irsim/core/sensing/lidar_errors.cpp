@@ -42,7 +42,7 @@ void pass_glass(const Sensing& s, const Fan& fan, Surface& surface) {
 /// Follow light from mirrors to the next surface: the beam reads the length of the whole way.
 void follow_mirrors(const Sensing& s, const Fan& fan, Surface& surface) {
   BeamBuffers& beams = s.buffers;
-  const Mount one{s.mount.object, 0, 0, 1, 0, 0, {}, {0.0}, {1.0}, {0.0}};
+  const Mount one{s.mount.object, 0, 0, 1, 0, 0, 0, 0, 0, 0, {}, {0.0}, {1.0}, {0.0}};
   for (int i = 0; i < s.mount.count; ++i) {
     const int hit = beams.hit[i];
     if (hit < 0 || s.world.material[hit] != Material::mirror) continue;

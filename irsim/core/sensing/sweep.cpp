@@ -46,6 +46,8 @@ Sensing part_of_sweep(const LidarErrors& errors, const Sensing& s, int k) {
                s.hits + first,
                s.valid + first,
                s.velocities + first,
+               s.readings,
+               s.memory,
                s.object_velocities,
                s.buffers,
                s.spare,

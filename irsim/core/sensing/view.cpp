@@ -152,7 +152,7 @@ bool contains(const Footprint& body, Vec2 p) { return meets(body, {p, 0.0, kPi, 
 
 /// One beam between each two neighboring bearings: it sees what is visible from one bearing to the next.
 Mount beams_between(const std::vector<double>& bearings) {
-  Mount mount{0, 0, 0, 0, 0, 0, {}, {}, {}, {}};
+  Mount mount{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {}, {}, {}, {}};
   mount.angle.push_back(0.0);  // two equal angles mark beams that are not evenly spaced
   mount.angle.push_back(0.0);
   for (std::size_t k = 1; k < bearings.size(); ++k) {

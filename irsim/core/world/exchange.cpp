@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "phases.hpp"
+#include "world/features.hpp"
 #include "world/spec.hpp"
 
 namespace irsim {
@@ -60,6 +61,22 @@ void copy_actuators(const World& world, State& to, int row, const Origin& origin
   const Actuators &now = world.actuators[row], &before = world_before.actuators[origin.object];
   to.actuated[row] = origin.state->actuated[origin.object];
   std::copy_n(origin.state->queue.data() + before.first, now.slots, to.queue.data() + now.first);
+}
+
+/// Copy what the sensors of a row remember, and their readings, where they are the same sensors at the same time.
+void copy_readings(const World& world, State& to, int row, const Origin& origin) {
+  if (origin.state->count[0] != to.count[0]) return;
+  for (const Scan& now : world.gauges) {
+    const Mount& mount = now.mount;
+    if (mount.object != row) continue;
+    for (const Scan& before : origin.world->gauges) {
+      const Mount& old = before.mount;
+      if (old.object != origin.object || old.index != mount.index || old.memory != mount.memory) continue;
+      std::copy_n(origin.state->memory.data() + old.first_memory, old.memory, to.memory.data() + mount.first_memory);
+      std::copy_n(origin.state->readings.data + old.first_reading, old.readings,
+                  to.readings.data + mount.first_reading);
+    }
+  }
 }
 
 /// The recorded history of a row, with the given number of extra rows.
@@ -174,6 +191,7 @@ void continue_from(const World& world, State& state, const World& world_before, 
     if (origin.state == &before) new_row[origin.object] = i;
     copy_row(state, i, *origin.state, origin.object);
     copy_actuators(world, state, i, origin);
+    copy_readings(world, state, i, origin);
     if (origin.state == &before && !before.opinions.empty() && !state.opinions.empty()) {
       state.opinions[i] = before.opinions[origin.object];
     }

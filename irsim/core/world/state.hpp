@@ -75,6 +75,7 @@ struct State {
   Array<std::int32_t> hits;
   Array<std::uint8_t> valid;     // 1 where the beam hit something within the limits of its range
   Array<double> velocities;      // (W * velocities_per_world,) measured velocities [m/s]
+  Array<double> readings;        // (W * readings_per_world,) numbers that sensors without beams report
   Array<std::uint8_t> explored;  // (W * cells of the fog,) 1 where a robot has seen the cell
   // (W,) for each world
   Array<std::int64_t> count;
@@ -94,6 +95,7 @@ struct State {
   std::vector<Detour> detours;            // (R,), empty if no object runs `footprint_orca`
   std::vector<std::int64_t> tied;         // (R,), empty if no object runs `rvo`: step of the last tie; -1 without one
   std::vector<std::uint32_t> goal_draws;  // (R,) wander goals drawn in this episode
+  std::vector<double> memory;             // (W * memory_per_world,) what sensors remember from step to step
   std::vector<Pose> before;               // (R,) poses at the beginning of the step
   std::vector<std::uint8_t> overshot;     // (R,) whether an overshoot of the present goal was reported
   std::vector<Pose> initial_pose;         // (R,)

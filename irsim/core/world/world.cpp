@@ -63,7 +63,7 @@ void find_members(World& world) {
   }
 }
 
-Mount mount_of(int object, int index) { return {object, index, 0, 0, 0, 0, {}, {}, {}, {}}; }
+Mount mount_of(int object, int index) { return {object, index, 0, 0, 0, 0, 0, 0, 0, 0, {}, {}, {}, {}}; }
 
 /// Set the nominal beams of a mount; the beams of `like` are copied if the angles are equal.
 void set_beams(Mount& mount, std::vector<double> angles, const Mount* like = nullptr) {
@@ -119,12 +119,19 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
     if (std::holds_alternative<std::monostate>(spec.sensors[k])) continue;  // this sensor is computed in Python
     Mount mount = mount_of(object, static_cast<int>(k));
     mount.first = world.beams_per_world, mount.first_velocity = world.velocities_per_world;
+    mount.first_reading = world.readings_per_world, mount.first_memory = world.memory_per_world;
     with(spec.sensors[k], [&](const auto& options) {
       set_beams(mount, beams(options), world.scans.empty() ? nullptr : &world.scans.back().mount);
-      mount.velocity_rows = velocity_rows(options), mount.offset = options.offset;
+      mount.velocity_rows = velocity_rows(options), mount.offset = mounted_at(options);
+      mount.readings = readings(options), mount.memory = memory(options);
     });
     world.beams_per_world += mount.count;
     world.velocities_per_world += mount.count * mount.velocity_rows;
+    world.readings_per_world += mount.readings, world.memory_per_world += mount.memory;
+    if (mount.readings > 0) {
+      world.gauges.push_back({spec.sensors[k], mount, {}});
+      continue;
+    }
     int parts = 1;
     with(spec.sensors[k], [&](const auto& options) { parts = std::min(sweep_parts(options), mount.count); });
     world.scans.push_back({spec.sensors[k], mount, parts > 1 ? split(mount, parts) : std::vector<Mount>()});

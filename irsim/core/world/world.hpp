@@ -39,6 +39,8 @@ struct Mount {
   int index;  // index among the sensors of the object
   int first, count;
   int first_velocity, velocity_rows;  // slice of the velocities of a world: rows of `count` numbers
+  int first_reading, readings;        // slice of the readings of a world, of sensors without beams
+  int first_memory, memory;           // slice of what the sensors of a world remember
   std::array<double, 3> offset;       // pose in the body frame [m, m, rad]
   std::vector<double> angle, cosine, sine;
 };
@@ -109,8 +111,9 @@ struct World {
   std::vector<int> latecomers;                              // objects that appear after the start
   std::vector<int> leavers;                                 // objects that leave the world before the end
   std::vector<BehaviorGroup> behaviors;
-  std::vector<Scan> scans;
-  int beams_per_world = 0, velocities_per_world = 0;
+  std::vector<Scan> scans;   // sensors with beams
+  std::vector<Scan> gauges;  // sensors that report numbers instead
+  int beams_per_world = 0, velocities_per_world = 0, readings_per_world = 0, memory_per_world = 0;
   std::size_t queue_slots = 0;  // commands that wait for their dead time, of all objects of a world
   std::optional<Fog> fog;
   std::vector<Mount> fog_beams;  // beams of each view of the fog; empty for views without occlusion

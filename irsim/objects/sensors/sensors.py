@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.components.sensors._gauges import GaugeOptions
 from irsim.components.sensors.contact2d import Contact2d
 from irsim.objects.sensors.contact import Contact2D
+from irsim.objects.sensors.gauge import Gauge
 from irsim.objects.sensors.lidar import FMCWLidar2D, Lidar2D
 from irsim.options.registry import SENSORS, Feature
 from irsim.simulation.random_streams import generator
@@ -110,12 +112,14 @@ def _nothing() -> None:
 
 def sensors_of(simulation: Simulation, view: SimObject) -> list[Any]:
     """Return the sensors of an object in the order of its entry, without unimplemented ones."""
-    native = _native(simulation, view)
+    native, gauges = _native(simulation, view), count()
     sensors: list[Any] = []
     for index, options in enumerate(view.record.sensors):
         feature = SENSORS.get(str(getattr(options, "name", "")))
         if feature is not None and feature.options is Contact2d:
             sensors.append(view.contact)
+        elif feature is not None and issubclass(feature.options, GaugeOptions):
+            sensors.append(Gauge(simulation, view, options, next(gauges)))
         elif feature is not None and feature.kernel is not None:
             sensors.append(_LIDARS.get(feature.name, Lidar2D)(simulation, view, options, next(native)))
         elif feature is not None and feature.function is not None:
@@ -125,10 +129,10 @@ def sensors_of(simulation: Simulation, view: SimObject) -> list[Any]:
 
 def attach_sensors(simulation: Simulation, view: SimObject) -> None:
     """Attach the sensors of an object to its row in another simulation."""
-    native = _native(simulation, view)
+    native, gauges = _native(simulation, view), count()
     for sensor in view.sensors:
         if not isinstance(sensor, (Contact2D, PythonSensor)):
-            sensor.attach(simulation, next(native))
+            sensor.attach(simulation, next(gauges if isinstance(sensor, Gauge) else native))
 
 
 def _native(simulation: Simulation, view: SimObject) -> Iterator[int]:

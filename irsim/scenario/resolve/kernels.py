@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import irsim._core as core
 from irsim.components.behaviors.follow import Follow
+from irsim.components.sensors._gauges import GaugeOptions
 from irsim.options.registry import BEHAVIORS, DISTRIBUTIONS, KINEMATICS, PLANNERS, SENSORS, SHAPES, Registry
 
 if TYPE_CHECKING:
@@ -61,11 +62,13 @@ def kernels_of(record: ObjectRecord, group_behavior: BehaviorOptions | None, zon
         drive = kernel_options(KINEMATICS, record.kinematics, **{**limits, "wheelbase": record.wheelbase or 1.0})
         if options is not None and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None:
             behavior = kernel_options(BEHAVIORS, options)
-    return Kernels(parts, drive, behavior, route, [_sensor(options) for options in record.sensors])
+    return Kernels(parts, drive, behavior, route, [_sensor(options, zones) for options in record.sensors])
 
 
-def _sensor(options: Any) -> Any:
-    """The options of a sensor; None for one computed in Python."""
+def _sensor(options: Any, zones: Sequence[str]) -> Any:
+    """The options of a sensor in a world with these zones; None for one computed in Python."""
+    if isinstance(options, GaugeOptions):
+        return kernel_options(SENSORS, options, **options.resolved(list(zones)))
     realism = getattr(options, "realism", None)
     errors = None
     if realism is not None:

@@ -1,0 +1,43 @@
+"""Sensors that report numbers instead of ranges: keys that several of them have."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field
+
+from irsim.components.options import SensorOptions
+from irsim.options.units import Number
+
+__all__ = ["DriftOptions", "GaugeOptions"]
+
+PerRootMeter = Annotated[Number, Field(ge=0, le=100, json_schema_extra={"x-unit": "m/sqrt(m)"})]
+PerRootTurn = Annotated[Number, Field(ge=0, le=100, json_schema_extra={"x-unit": "rad/sqrt(m)"})]
+PerRootRadian = Annotated[Number, Field(ge=0, le=100, json_schema_extra={"x-unit": "rad/sqrt(rad)"})]
+
+
+class GaugeOptions(SensorOptions):
+    """A sensor that reports a few numbers in each step; programs read them by name."""
+
+    reports: ClassVar[tuple[str, ...]] = ()
+    """Names of its numbers, in their order."""
+    report_units: ClassVar[tuple[str, ...]] = ()
+
+    def resolved(self, zones: list[str]) -> dict[str, Any]:
+        """Fields of the kernel that are not keys, or not as they are written.
+
+        Args:
+            zones: Names of the zones of the world.
+        """
+        return {}
+
+
+class DriftOptions(GaugeOptions):
+    """Errors of a motion that add up: variances grow with the way and with the turn, whatever the step."""
+
+    distance_noise: PerRootMeter = 0.0
+    """Standard deviation of the distance after a way of 1 m; it grows with the square root of the way."""
+    heading_noise: PerRootTurn = 0.0
+    """Standard deviation of the heading after a way of 1 m."""
+    turning_noise: PerRootRadian = 0.0
+    """Standard deviation of the heading after a turn of 1 rad."""
