@@ -101,3 +101,16 @@ def test_each_object_of_an_entry_may_have_its_own() -> None:
     assert [record.actuation for record in scenario.objects] == [Actuation(lag=0.1), None, None]
     scenario, _ = or_raise(read(robot(**given, actuation={"lag": 0.1})))
     assert [record.actuation for record in scenario.objects] == [Actuation(lag=0.1)] * 3
+
+
+def test_behaviors_that_react_late_are_told() -> None:
+    def told(behavior: str, **actuation: Any) -> list[str]:
+        data = {**robot(behavior={"name": behavior}, actuation=actuation), **obstacle(state=[5, 2, 0])}
+        return [d.message for d in read(data, strict=True).diagnostics if d.code == "reacts-late"]
+
+    assert told("orca", delay=[0.1, 0.2], lag=0.1, command_period=0.2) == [
+        "'robot_0' drives 0.5 m before a command takes effect (0.5 s); orca does not reckon with that"
+    ]
+    assert told("orca", delay=0.04) == told("dash", delay=0.5) == told("orca", noise=0.1) == []
+    alone = robot(behavior={"name": "orca"}, actuation={"delay": 0.5})
+    assert not any("reacts-late" in one for one in findings(alone))

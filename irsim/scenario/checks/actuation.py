@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.diagnostics.diagnostic import Edit
+from irsim.common.text import metres, seconds
+from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.actuation import PER_CONTROL, Actuation, per_control
+from irsim.scenario.resolve.body_size import top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
+
+_WAY = 0.05
+"""Way that an object drives before a command takes effect, above which that is told [m]."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -52,6 +58,8 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             fix=f"write more than {step_time:g}, or remove 'command_period'",
         )
     yield from _never_moves(record, options, path)
+    if sum(not other.unobstructed for other in context.resolved.objects) > 1:
+        yield from _reacts_late(record, options, path, step_time)
 
 
 def _why_unused(context: Context, record: ObjectRecord) -> str | None:
@@ -64,7 +72,7 @@ def _why_unused(context: Context, record: ObjectRecord) -> str | None:
     return "is moved by the calling program" if context.scenario.world.step_mode == "external" else None
 
 
-def _wrong_length(record: ObjectRecord, path: tuple[Any, ...], key: str, value: list[float]) -> Finding:
+def _wrong_length(record: ObjectRecord, path: Path, key: str, value: list[float]) -> Finding:
     drive: Any = record.kinematics
     rows = f" ({', '.join(drive.control_rows)})" if record.vel_dim == len(drive.control_rows) else ""
     same = Edit("replace", path, value[0]) if len(value) == 1 else None
@@ -79,7 +87,7 @@ def _wrong_length(record: ObjectRecord, path: tuple[Any, ...], key: str, value: 
     )
 
 
-def _lag_twice(context: Context, record: ObjectRecord, path: tuple[Any, ...]) -> Finding:
+def _lag_twice(context: Context, record: ObjectRecord, path: Path) -> Finding:
     assert record.actuation is not None
     own = getattr(record.kinematics, "tau", None) is not None
     old = (*context.entry_path(record, "kinematics"), "tau") if own else ("world", "drive_tau")
@@ -96,7 +104,7 @@ def _lag_twice(context: Context, record: ObjectRecord, path: tuple[Any, ...]) ->
     )
 
 
-def _never_moves(record: ObjectRecord, options: Actuation, path: tuple[Any, ...]) -> Iterator[Finding]:
+def _never_moves(record: ObjectRecord, options: Actuation, path: Path) -> Iterator[Finding]:
     """A dead band, or a resolution, that no speed within the limits gets out of."""
     travel = getattr(record.kinematics, "speeds", 0)
     top = [max(abs(low), abs(high)) for low, high in zip(record.vel_min, record.vel_max, strict=False)][:travel]
@@ -110,3 +118,24 @@ def _never_moves(record: ObjectRecord, options: Actuation, path: tuple[Any, ...]
                 given=getattr(options, key),
                 fix=f"write less than {min(top) / share:g}",
             )
+
+
+def _reacts_late(record: ObjectRecord, options: Actuation, path: Path, step_time: float) -> Iterator[Finding]:
+    """A behavior that avoids others, and decides as if its commands were executed at once."""
+    behavior: Any = record.active_behavior
+    inner = getattr(behavior, "local", behavior)
+    if not getattr(inner, "avoids", False):
+        return
+    held = options.command_period if options.command_period > step_time else 0.0
+    time = held + max(per_control(options.delay, record.vel_dim)) + max(per_control(options.lag, record.vel_dim))
+    way = time * top_speed(record)
+    if not _WAY < way < math.inf:
+        return
+    copes = inner.name in ("orca", "rvo")
+    yield hint(
+        "reacts-late",
+        path,
+        f"'{record.name}' drives {metres(way)} before a command takes effect ({seconds(time)}); {inner.name} does not "
+        "reckon with that",
+        fix="lower vel_max, or leave more room" if copes else "orca and rvo cope best; else lower vel_max",
+    )

@@ -29,7 +29,8 @@ class Actuation(Options):
     Commands pass, in this order: `command_period`, `delay`, `resolution`, the limits `vel_min`, `vel_max` and `acce` of
     the object with `jerk`, `lag`, `dead_band`, `noise`. At the end is the executed control, which sensors,
     behaviors, policies and recorded runs see. Values are one number for all controls, or a list with one per control,
-    in the order of `vel_max`. An object without a command in a step is commanded to stop.
+    in the order of `vel_max`. An object without a command in a step is commanded to stop. Behaviors do not reckon with
+    it: they decide as if commands were executed at once.
     """
 
     also_called: ClassVar[dict[str, str]] = {
