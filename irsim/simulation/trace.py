@@ -99,6 +99,13 @@ class Trace:
     def __len__(self) -> int:
         return len(self.step)
 
+    @property
+    def actions(self) -> Floats:
+        """(T, N, 3) what was commanded, of objects without ``actuation`` the executed control."""
+        if self.command is None:
+            return self.control
+        return np.where(np.isnan(self.command), self.control, self.command)
+
 
 def record(simulation: Simulation, steps: int, *, until_done: bool = True, scans: bool = False) -> Trace:
     """Advance a simulation with a single world and return its trace, including the present state.

@@ -88,6 +88,10 @@ def test_a_recorded_run_knows_what_was_commanded(workspace: Path) -> None:
     assert trace.command is not None
     np.testing.assert_allclose(trace.control[4:20, 0, 0], np.minimum(1.0, 0.3 * np.arange(1, 17)), atol=1e-6)
     assert np.all(trace.command[1:20, 0, 0] == 1.0)
+    irsim.export_run("kept", "kept.npz")
+    with np.load("kept.npz") as arrays:
+        assert np.array_equal(arrays["command"], trace.command)
+        assert np.array_equal(trace.actions[:, 0], trace.command[:, 0])
     irsim.run(text=text(), seed=3, record="plain")
     assert open_run("plain").trace().command is None
 

@@ -186,7 +186,7 @@ def _buffer(learner: _Learner, block: Block, last: int) -> dict[str, Any] | None
     learner.collided = bool(touching[-1])
     return {
         "observations": _observations(learner, block, part),
-        "actions": trace.control[acted, column, : len(learner.actor.controls)].astype(np.float32),
+        "actions": trace.actions[acted, column, : len(learner.actor.controls)].astype(np.float32),
         "rewards": rewards.astype(np.float64),
         "terminations": terminations,
         "truncations": truncations,

@@ -2,7 +2,8 @@
 
 The arrays are ``step`` and ``time`` (T,), ``pose``, ``velocity``, ``control`` and ``goal`` (T, N, 3), the flags
 ``arrived``, ``collided``, ``stopped`` and ``between_steps`` (T, N), which says whether an object touched something
-within the step and at neither end of it, ``ranges/<object>/<number>`` (T, beams), ``names`` and ``roles`` (N,), and
+within the step and at neither end of it, ``command`` (T, N, 3) if an object has ``actuation``,
+``ranges/<object>/<number>`` (T, beams), ``names`` and ``roles`` (N,), and
 ``about``, a JSON text with the units, and with the scenario, seed, versions, result and objects of the run.
 """
 
@@ -27,7 +28,8 @@ _UNITS = {
     "time": "s",
     "pose": "m, m, rad: x, y, heading in the world frame",
     "velocity": "m/s, m/s, rad/s: mean over the step that led to the row, world frame; NaN in row 0",
-    "control": "units of the drive: commanded in the step that led to the row, before noise, zero padded",
+    "control": "units of the drive: executed in the step that led to the row, before noise of the drive, zero padded",
+    "command": "units of the drive: commanded in that step; NaN for objects without actuation",
     "goal": "m, m, rad: x, y, heading in the world frame; NaN without a goal",
     "ranges": "m, from right to left; infinite: nothing was hit",
 }
@@ -60,10 +62,18 @@ def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list
             _add(archive, name, None, iter([values]))
         for name, part in _TRACE.items():
             _add(archive, name, rows, (part(block) for block in episode.blocks(scans=False)))
+        if next(episode.blocks(scans=False)).trace.command is not None:
+            _add(archive, "command", rows, (_command(block) for block in episode.blocks(scans=False)))
         for lidar in episode.lidars:
             scans = (block.trace.ranges[lidar.key] for block in episode.blocks())
             _add(archive, f"ranges/{lidar.key}", episode.last_scan + 1, scans)
     return []
+
+
+def _command(block: Block) -> NDArray[np.float64]:
+    """What was commanded, of a run in which objects have actuation."""
+    assert block.trace.command is not None
+    return block.trace.command
 
 
 def _add(archive: zipfile.ZipFile, name: str, rows: int | None, parts: Iterator[NDArray[Any]]) -> None:
