@@ -75,7 +75,7 @@ def test_a_recorded_run_agrees_with_its_audit(workspace: Path, drive: str, mode:
 
 
 def test_the_limits_of_lagged_controls_are_audited(workspace: Path) -> None:
-    irsim.run(text=text("{delay: 0.2, jerk: 9, lag: 0.2, dead_band: 0.1}"), seed=3, record="kept")
+    irsim.run(text=text("{delay: 0.2, jerk: 9, lag: 0.2, dead_band: 0.4}"), seed=3, record="kept")
     audit = audit_runs(["kept"]).runs[0]
     checked = {part.name: part for part in audit.checks}
     assert not audit.findings
