@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 import irsim
+from irsim.lib import KinematicsHandler, register_kinematics
 from irsim.options.registry import BEHAVIORS
 from irsim.runs.audit.audit import audit_runs
 from irsim.runs.reading import open_run
@@ -119,15 +121,55 @@ def test_contacts_take_the_lag_of_actuators(make: Callable[..., Any]) -> None:
     np.testing.assert_allclose(speeds, [1 - np.exp(-1), 1 - 0.8**5], atol=1e-12)
 
 
-def test_an_object_with_a_step_of_its_own_keeps_its_dead_time(make: Callable[..., Any]) -> None:
+@pytest.mark.parametrize("hook", ["step", "gen_behavior_vel", "mid_process", "pre_process", "post_process"])
+def test_an_overridden_part_of_a_step_changes_nothing_of_the_dead_time(make: Callable[..., Any], hook: str) -> None:
     """An overridden `step` moves the object again from where it was; its actuators go on once per step."""
     plain = text("{delay: 0.2, lag: 0.3, jerk: 5}").replace("behavior: {name: dash}", "behavior: null")
     env, other = make(plain), make(plain)
-    usual = env.robot.step
-    env.robot.step = lambda velocity=None, sensor_step=True: usual(velocity, sensor_step)
+    usual = getattr(env.robot, hook)
+    setattr(env.robot, hook, lambda *given, **named: usual(*given, **named))
     for step in range(12):
         for one in (env, other):
             one.step([0.1 * step, 0.0])
         np.testing.assert_allclose(env.robot.velocity, other.robot.velocity, atol=1e-12)
+    assert env.robot.velocity[0, 0] > 0.2
     env.end()
     other.end()
+
+
+@pytest.mark.parametrize("way", ["copy", "snapshot"])
+def test_copies_within_a_dead_time_go_on_as_the_original(make: Callable[..., Any], way: str) -> None:
+    env = make(text(WHOLE.replace("0.15", "0.55")))
+    for _ in range(7):
+        env.step()
+    other = copy.deepcopy(env) if way == "copy" else make(text(WHOLE.replace("0.15", "0.55")))
+    if way == "snapshot":
+        other.restore(env.snapshot())
+    for _ in range(20):
+        env.step()
+        other.step()
+    assert np.array_equal(env.robot.state, other.robot.state)
+    assert np.array_equal(env.robot.velocity, other.robot.velocity)
+    assert env.robot.velocity[0, 0] > 0.5
+
+
+def test_drives_in_python_have_actuators_up_to_three_controls(make: Callable[..., Any]) -> None:
+    for count in (2, 4):
+
+        @register_kinematics(f"sled_{count}")
+        class Sled(KinematicsHandler):
+            action_dim, vel_max, vel_min, acce = count, (1.0,) * count, (-1.0,) * count, (99.0,) * count
+
+            def step(self, state: Any, velocity: Any, step_time: float) -> Any:
+                return state + np.vstack([velocity[:2], np.zeros((1, 1))]) * step_time
+
+    scene = "robot: {kinematics: {name: sled_2}, state: [1, 1, 0], goal: null, actuation: {delay: [0.2, 0.1]}}"
+    env = make(scene)
+    ways = []
+    for _ in range(4):
+        env.step([0.5, 0.25])
+        ways.append(env.robot.state[:2, 0].tolist())
+    np.testing.assert_allclose(ways, [[1, 1], [1, 1.025], [1.05, 1.05], [1.1, 1.075]], atol=1e-12)
+    env.end()
+    with pytest.raises(irsim.ScenarioError, match="actuation of more than 3 controls"):
+        make(scene.replace("sled_2", "sled_4").replace("[0.2, 0.1]", "0.2"))
