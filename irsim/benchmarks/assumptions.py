@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from irsim.common.text import clean, listed
+from irsim.scenario.model.actuation import Actuation
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
 __all__ = ["SWEPT", "Limit", "assumptions_of", "limits_of", "unequal_note"]
@@ -47,11 +48,16 @@ def _contacts(scenario: ResolvedScenario) -> str:
 def _limits(scenario: ResolvedScenario) -> str:
     moving = [record for record in scenario.objects if record.role == "robot" and not record.static]
     limited = [any(map(math.isfinite, record.acce)) for record in moving]
+    given = [record.actuation for record in moving if record.actuation is not None]
+    used = [key for key in Actuation.model_fields if any(key in one.model_fields_set for one in given)]
     if all(limited):
-        return "accelerations are limited"
-    if any(limited):
-        return "accelerations of some robots are limited"
-    return "robots change their speed at once (no acce)"
+        fact = "accelerations are limited"
+    elif any(limited):
+        fact = "accelerations of some robots are limited"
+    else:
+        fact = "accelerations are not limited (no acce)" if used else "robots change their speed at once (no acce)"
+    whose = "" if len(given) == len(moving) else " of some robots"
+    return f"{fact}, and commands{whose} pass actuators ({', '.join(used)})" if used else fact
 
 
 _EQUAL_SHARE = 0.01

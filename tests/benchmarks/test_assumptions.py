@@ -1,0 +1,38 @@
+"""What a page of numbers says that it takes for granted of the robots' drives."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from irsim.benchmarks.assumptions import assumptions_of
+from irsim.scenario.read import or_raise, read
+
+EXACT = "robots change their speed at once (no acce)"
+
+
+@pytest.mark.parametrize(
+    ("robots", "told"),
+    [
+        ([{}], EXACT),
+        ([{"acce": [1, 4]}], "accelerations are limited"),
+        ([{"acce": [1, 4]}, {}], "accelerations of some robots are limited"),
+        ([{"actuation": {}}], EXACT),
+        (
+            [{"actuation": {"lag": 0.2, "delay": 0.1}}],
+            "accelerations are not limited (no acce), and commands pass actuators (delay, lag)",
+        ),
+        (
+            [{"acce": [1, 4], "actuation": {"noise": 0.1}}, {"acce": [1, 4]}],
+            "accelerations are limited, and commands of some robots pass actuators (noise)",
+        ),
+    ],
+)
+def test_the_drives_of_robots_are_told(robots: list[dict[str, Any]], told: str) -> None:
+    made = [
+        {"kinematics": {"name": "diff"}, "state": [1, 1 + 3 * k, 0], "goal": [9, 1 + 3 * k], **keys}
+        for k, keys in enumerate(robots)
+    ]
+    scenario, _ = or_raise(read({"robot": made}, strict=True))
+    assert assumptions_of({"one": scenario})[1] == told
