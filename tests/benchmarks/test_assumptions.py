@@ -1,4 +1,4 @@
-"""What a page of numbers says that it takes for granted of the robots' drives."""
+"""A page of numbers says what it takes for granted of the robots' drives."""
 
 from __future__ import annotations
 

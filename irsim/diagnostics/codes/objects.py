@@ -247,8 +247,8 @@ OBJECTS: dict[str, Code] = {
         "commands that take effect late",
         "'actuation' delays what a behavior decides, and behaviors decide as if their commands were executed at once. "
         "Of 15 scenes in which 8 omnidirectional robots cross a circle at 1 m/s (acce [2, 4]), with a 'delay' of 0.1 s "
-        "all end without a contact under rvo, 14 under orca, 7 under footprint_orca and none under sfm; with a 'delay' "
-        "and a 'lag' of 0.3 s each 15 under orca and none under the others. Example: behavior: {name: sfm} with delay: "
+        "all end without a contact under rvo, 14 under orca, 7 under footprint_orca and 0 under sfm; with a 'delay' "
+        "and a 'lag' of 0.3 s each 15 under orca and 0 under the others. Example: behavior: {name: sfm} with delay: "
         "0.3; write behavior: {name: orca}.",
     ),
     "lag-twice": Code(

@@ -71,7 +71,7 @@ def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list
 
 
 def _command(block: Block) -> NDArray[np.float64]:
-    """What was commanded, of a run in which objects have actuation."""
+    """The commands of a run in which objects have actuation."""
     assert block.trace.command is not None
     return block.trace.command
 
