@@ -65,6 +65,52 @@ class SkidSteerOptions(_Options):
         speed_max: float,
     ) -> None: ...
 
+class SingleTrackOptions(_Options):
+    def __init__(
+        self,
+        *,
+        noise: bool,
+        alpha: Sequence[float],
+        model: str,
+        tyres: str,
+        mode: str,
+        wheelbase: float,
+        psi_max: float,
+        steer_rate: float,
+        acce_max: float,
+        speed_switch: float,
+        speed_min: float,
+        speed_max: float,
+        mass: float,
+        inertia: float,
+        front: float,
+        rear: float,
+        height: float,
+        friction: float,
+        stiffness_front: float,
+        stiffness_rear: float,
+    ) -> None: ...
+
+class DiffDynamicOptions(_Options):
+    def __init__(
+        self,
+        *,
+        noise: bool,
+        alpha: Sequence[float],
+        mass: float,
+        inertia: float,
+        wheel_radius: float,
+        track: float,
+        drag: float,
+        turn_drag: float,
+        torque_max: float,
+        voltage: float,
+        resistance: float,
+        torque_constant: float,
+        gear: float,
+        response: float,
+    ) -> None: ...
+
 # behaviors (core/behaviors/)
 class AvocadoOptions(_Options):
     def __init__(
@@ -1408,6 +1454,11 @@ def drive_step(
     drive: _Options, state: Sequence[float], control: Sequence[float], dt: float, integration: int = ...
 ) -> tuple[list[float], list[float]]:
     """State after one period, with as many rows as given (at least 3), and twist; `integration` as in a world."""
+
+def single_track_rates(
+    drive: SingleTrackOptions, state: Sequence[float], rate: float, acceleration: float
+) -> list[float]:
+    """Derivatives of CommonRoad's state at steering angle, speed, heading, yaw rate and slip angle."""
 
 def drive_follow(
     drive: _Options,

@@ -289,6 +289,9 @@ class Connection:
     def _command(self, name: str, command: Sequence[float]) -> None:
         simulation, row = self.simulation, self._row_of[name]
         kinematics: Any = simulation.scenario.objects[row].kinematics
+        if getattr(kinematics, "mode", "") == "acceleration":
+            what = f"'{name}' takes accelerations, but another program gives it speeds"
+            raise BridgeError("bridge-mismatch", what, "mode: steer")
         control = native_control(
             self.scene.agent(name),
             command,

@@ -10,7 +10,7 @@ from irsim.simulation.scene import SceneObject
 
 __all__ = ["native_control"]
 
-_YAW_RATE = ("diff", "skid_steer")
+_YAW_RATE = ("diff", "skid_steer", "diff_dynamic")
 """Drives whose controls are forward speed and yaw rate."""
 
 
@@ -39,7 +39,7 @@ def native_control(
         return [forward, left]
     if agent.drive == "omni_angular":
         return [forward, left, rate]
-    if agent.drive == "acker":
+    if agent.drive in ("acker", "single_track"):
         base = 1.0 if agent.wheelbase is None else agent.wheelbase
         angle = steer if abs(forward) < 1e-6 else math.atan(base * rate / forward)
         return [forward, (angle - steer) / period if steering_rate else angle]

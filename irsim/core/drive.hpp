@@ -5,6 +5,7 @@
 //   Vec3    follow(options, wish)        controls that realise a wanted world-frame velocity
 //   Rows    rows(options)                which controls are what
 //   Vec3    constrain(options, control)  limits beyond vel_min, vel_max and acce (optional)
+//   void    rest(options, extra)         forget inner speeds, when something else has stopped the body (optional)
 //   Car     steering(options)            how it steers, of a drive whose second control steers wheels (optional)
 //
 // The struct has `bool noise`. A field `wheelbase` receives the wheelbase of the drive, else of the shape, else 1.
@@ -74,12 +75,16 @@ struct Rows {
   int travel;     // number of leading components that are translation: forward, then lateral speed
   int yaw;        // index of the component that is a yaw rate, -1 without one: contacts then change the speed only
   int inner = 0;  // number of extra state rows that the drive uses
+  bool coasts = false;  // whether speeds are among these rows, so that they need time to change
 };
 
 template <class Options>
 Vec3 constrain(const Options&, Vec3 control) {
   return control;
 }
+
+template <class Options>
+void rest(const Options&, double*) {}
 
 template <class Options>
 std::optional<Car> steering(const Options&) {

@@ -31,4 +31,11 @@ inline bool turns_in_place(const Drive& drive) {
   return found;
 }
 
+/// Whether the speeds of a drive are states of its own, which approach wanted ones without ever being equal to them.
+inline bool coasts(const Drive& drive) {
+  bool found = false;
+  with(drive, [&](const auto& options) { found = rows(options).coasts; });
+  return found;
+}
+
 }  // namespace irsim

@@ -101,6 +101,8 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "brakes-too-late": ("robot: {vel_max: [1.2, 2], vel_min: [0, -2], acce: [1, 4], behavior: {name: orca, timeHorizonObst: 0.5}}\nobstacle: {shape: {name: rectangle, length: 2, width: 1}, state: [5, 5, 0]}", "robot: {vel_max: [1.2, 2], vel_min: [0, -2], acce: [1, 4], behavior: {name: orca, timeHorizonObst: 1.8}}\nobstacle: {shape: {name: rectangle, length: 2, width: 1}, state: [5, 5, 0]}"),
     "static-behavior": ("robot: {static: true, behavior: {name: dash}}", "robot: {static: true, behavior: null}"),
     "no-speed": ("robot: {vel_max: [0, 1], vel_min: [0, -1]}", "robot: {vel_max: [1, 1], vel_min: [-1, -1]}"),
+    "drive-not-pushed": ("world: {collision_mode: contact}\nrobot: {kinematics: {name: single_track}}", "world: {collision_mode: contact}\nrobot: {kinematics: {name: acker, wheelbase: 0.33}}"),
+    "drive-by-acceleration": ("robot: {kinematics: {name: single_track, mode: acceleration}, behavior: {name: dash}}", "robot: {kinematics: {name: single_track, mode: steer}, behavior: {name: dash}}"),
     "no-turning": ("robot: {vel_max: [1, 0], vel_min: [-1, 0]}", "robot: {vel_max: [1, 1], vel_min: [-1, -1]}"),
     "target-roles-nobody": ("robot: {behavior: {name: rvo, target_roles: robot}}", "robot: {behavior: {name: rvo}}"),
     "jumps-through": ("robot: {vel_max: [8, 1], vel_min: [-8, -1], goal_threshold: 0.5}\nobstacle: {shape: {name: rectangle, length: 0.1, width: 4}, state: [5, 5, 0.7854]}", "robot: {vel_max: [1, 1]}\nobstacle: {shape: {name: rectangle, length: 0.1, width: 4}, state: [5, 5, 0.7854]}"),

@@ -42,6 +42,10 @@ EVERYDAY: dict[str, str] = {
     "robot.kinematics.tricycle": "three wheels, three-wheeler, forklift, pallet truck, steered drive wheel, dreirad, "
     "front wheel drive, triciclo",
     "robot.kinematics.diff": "differential, differential drive, diff drive, unicycle, turtlebot, two wheels",
+    "robot.kinematics.diff_dynamic": "motors, torque, mass, inertia, heavy, voltage, wheel torque, dynamics, "
+    "träge, inercia",
+    "robot.kinematics.single_track": "race car, racing car, racecar, f1tenth, f1/10, commonroad, drift, understeer, "
+    "tyres, tires, tyre slip, vehicle dynamics, car dynamics, rennwagen, coche de carreras",
     "robot.kinematics.skid_steer": "skid steer, tank, tracks, tracked, crawler, caterpillar, four-wheeled, "
     "jackal, husky, pioneer, slip, slippery, raupe, kettenfahrzeug, oruga",
     "robot.kinematics.omni": "omnidirectional, holonomic, mecanum, omni wheels, omniwheel, swerve, point mass",

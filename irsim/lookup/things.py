@@ -180,8 +180,9 @@ THINGS: dict[str, Guide] = {
     "floor": Guide(
         "carpet, tiles and ice change nothing",
         f"{NO} surfaces: no grip, slip or speed that depends on the place. A carpet can be drawn (an obstacle with "
-        "unobstructed: true, which nothing touches) or watched (world.zones). Slip of one robot everywhere: noise of "
-        "its kinematics; a slower one: vel_max.",
+        "unobstructed: true, which nothing touches) or watched (world.zones). Slip of one robot everywhere: "
+        "kinematics skid_steer with traction_left and traction_right, single_track with friction, or noise of its "
+        "kinematics; a slower one: vel_max.",
         "obstacle: {name: carpet, shape: {name: rectangle, length: 3, width: 2}, state: [5, 3, 0], unobstructed: true}",
         (
             *("carpet", "rug", "tile", "grass", "mud", "sand", "gravel", "slippery", "ice", "wet floor"),

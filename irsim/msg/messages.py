@@ -259,10 +259,15 @@ def state_and_control(obj: Any, odometry: Any) -> tuple[list[float], list[float]
         control[1] = state[3]
         if obj.kinematics == "tricycle":
             control[0] /= math.cos(state[3])
+        elif obj.kinematics == "single_track":
+            state[4:7] = [forward, rate, math.atan2(lateral + obj.record.kinematics.rear * rate, forward)]
     elif obj.record.kinematics.speeds == 2:
         control[1:] = [lateral, rate][: len(control) - 1]
     elif len(control) > 1:
         control[1] = rate
+    if obj.kinematics == "diff_dynamic":
+        drive = obj.record.kinematics
+        state[3:5] = ((forward + side * drive.track / 2 * rate) / drive.wheel_radius for side in (-1, 1))
     return state, control
 
 

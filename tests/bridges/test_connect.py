@@ -150,9 +150,11 @@ def test_a_collision_that_irsim_alone_would_see_does_not_count() -> None:
     ("drive", "command", "expected"),
     [
         ("diff", (0.5, 9.0, 0.2), [0.5, 0.2]),
+        ("diff_dynamic", (0.5, 9.0, 0.2), [0.4, 0.2]),
         ("skid_steer", (0.5, 9.0, 0.2), [0.5, 0.2]),
         ("omni", (0.5, 0.4, 9.0), [0.5, 0.4]),
         ("acker", (0.5, 0.0, 0.1), [0.5, math.atan(0.1 / 0.5)]),
+        ("single_track", (0.5, 0.0, 0.1), [0.5, math.atan(0.3302 * 0.1 / 0.5)]),
         ("tricycle", (0.3, 0.0, 0.4), [0.5, math.atan(0.4 / 0.3)]),
         ("tricycle", (-0.3, 0.0, 0.4), [-0.5, -math.atan(0.4 / 0.3)]),
     ],

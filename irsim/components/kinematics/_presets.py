@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["SKID_STEER", "Preset", "filled"]
+__all__ = ["SKID_STEER", "VEHICLES", "Preset", "filled"]
 
 
 @dataclass(frozen=True)
@@ -59,5 +59,66 @@ SKID_STEER = {
         _tracks(0.5708 * 1.875),
         "Clearpath Husky, wheels 0.5708 m apart and wheel_separation_multiplier 1.875: "
         "husky_control/config/control.yaml of its maker; read 2026-11-30",
+    ),
+}
+
+
+def _car(
+    limits: tuple[float, float, float, float, float, float],
+    body: tuple[float, float, float, float, float],
+    tyres: tuple[float, float],
+) -> dict[str, float]:
+    psi_max, steer_rate, acce_max, speed_switch, speed_min, speed_max = limits
+    mass, inertia, front, rear, height = body
+    return {
+        "psi_max": psi_max,
+        "steer_rate": steer_rate,
+        "acce_max": acce_max,
+        "speed_switch": speed_switch,
+        "speed_min": speed_min,
+        "speed_max": speed_max,
+        "mass": mass,
+        "inertia": inertia,
+        "front": front,
+        "rear": rear,
+        "height": height,
+        "friction": 1.0489,
+        "stiffness_front": tyres[0],
+        "stiffness_rear": tyres[1],
+    }
+
+
+_COMMONROAD = "vehicle {} of CommonRoad: package commonroad-vehicle-models 3.0.2; read 2026-11-30"
+_TYRE = 20.898083706740398
+"""Stiffness of CommonRoad's tyres: 21.92 / 1.0489 [1/rad]."""
+
+VEHICLES = {
+    "ford_escort": Preset(
+        _car(
+            (0.91, 0.4, 11.5, 4.755, -13.9, 45.8),
+            (1225.8878467253344, 1538.8533713561394, 0.88392, 1.50876, 0.59436),
+            (_TYRE, _TYRE),
+        ),
+        "Ford Escort, " + _COMMONROAD.format(1),
+    ),
+    "bmw_320i": Preset(
+        _car(
+            (1.066, 0.4, 11.5, 7.319, -13.9, 50.8),
+            (1093.2952334674046, 1791.5995300122856, 1.1561957064, 1.4227170936, 0.61373004),
+            (_TYRE, _TYRE),
+        ),
+        "BMW 320i, " + _COMMONROAD.format(2),
+    ),
+    "vw_vanagon": Preset(
+        _car(
+            (1.023, 0.4, 11.5, 7.824, -11.2, 41.7),
+            (1478.8979637767998, 2473.1176915564442, 1.1507916024, 1.3211363976, 0.804490644),
+            (_TYRE, _TYRE),
+        ),
+        "VW Vanagon, " + _COMMONROAD.format(3),
+    ),
+    "f1tenth": Preset(
+        _car((0.4189, 3.2, 9.51, 7.319, -5.0, 20.0), (3.74, 0.04712, 0.15875, 0.17145, 0.074), (4.718, 5.4562)),
+        "F1TENTH racing car: gym/f110_gym/envs/f110_env.py of f1tenth_gym; read 2026-11-30",
     ),
 }

@@ -47,6 +47,14 @@ std::pair<Numbers, Numbers> drive_step(const Drive& drive, const Numbers& state,
   return {out, {twist[0], twist[1], twist[2]}};
 }
 
+Numbers rates_of_single_track(const Drive& drive, const std::array<double, 5>& state, double rate,
+                              double acceleration) {
+  const auto* options = std::get_if<SingleTrackOptions>(&drive);
+  if (options == nullptr) throw nb::value_error("the drive must be a single track");
+  const double values[5] = {state[0], state[1], state[2], state[3], state[4]};
+  return single_track_rates(*options, values, rate, acceleration);
+}
+
 Numbers drive_follow(const Drive& drive, const Numbers& state, const Numbers& velocity, double min_speed,
                      double tolerance, double guarantee_time, double max_rate, double acce, double dt) {
   const LoneObject object(drive, state);
@@ -109,6 +117,8 @@ void bind_object(nb::module_& m) {
   bind_phase(m, "integrate_row", [](W world, State& s, int w, int i) { integrate(world, s, w, i); });
   bind_phase(m, "remember_row", [](W world, State& s, int w, int i) { remember(s, w * world.objects + i); });
   const Turning defaults;
+  m.def("single_track_rates", &rates_of_single_track, nb::arg("drive"), nb::arg("state"), nb::arg("rate"),
+        nb::arg("acceleration"));
   m.def("drive_step", &drive_step, nb::arg("drive"), nb::arg("state"), nb::arg("control"), nb::arg("dt"),
         nb::arg("integration") = static_cast<int>(kEuler));
   m.def("drive_follow", &drive_follow, nb::arg("drive"), nb::arg("state"), nb::arg("velocity"),

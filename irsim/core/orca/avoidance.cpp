@@ -347,7 +347,8 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
                                all.scratch, velocity);
       }
     }
-    Turning turning = turning_for(world, state, row, squared(velocity - preferred) > 0.0);
+    const double same = coasts(world.drive[i]) ? kMinSpeed * kMinSpeed : 0.0;
+    Turning turning = turning_for(world, state, row, squared(velocity - preferred) > same);
     // The heading may lead into a wall even if the wanted velocity does not.
     if (hard > 0) turning.max_forward = fastest_along(state.heading(row), all.planes.data(), hard);
     if (car) {

@@ -55,6 +55,8 @@ void integrate(const World& world, State& state, int w, int object) {
   const int row = w * world.objects + object;
   if (world.is_static[object] || state.stopped[row]) {
     state.twist[row] = {};
+    with(world.drive[object],
+         [&](const auto& drive) { rest(drive, &state.extra[static_cast<std::size_t>(row) * state.extra_rows]); });
     return;
   }
   if (!world.dynamics[object].driven) return coast(world, state, row);

@@ -192,6 +192,16 @@ OBJECTS: dict[str, Code] = {
         " or write a larger goal_threshold. 'follow' lets the car back up first, but without reverse ('vel_min' starts "
         "at 0) it stands still: write vel_min: [-2, -1], or a goal farther ahead.",
     ),
+    "drive-not-pushed": Code(
+        "contacts with a drive that has speeds of its own",
+        "In 'collision_mode: contact' bodies push each other. single_track and diff_dynamic have speeds of their own, "
+        "which contacts cannot change: take 'acker' or 'diff' there, or another mode.",
+    ),
+    "drive-by-acceleration": Code(
+        "behavior on a drive that takes accelerations",
+        "Behaviors and paths give speeds. 'mode: acceleration' of single_track is for policies and programs that give "
+        "accelerations: write 'mode: steer' or 'mode: angular', or leave the behavior out.",
+    ),
     "static-behavior": Code(
         "static object with a behavior",
         "'static: true' keeps an object in place, whatever its kinematics and behavior. Remove one of the two.",

@@ -11,6 +11,7 @@ import numpy as np
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 from irsim.runs.audit.artifact import Artifact, Body
+from irsim.runs.audit.cars import single_track
 
 __all__ = ["INNER", "ends_of"]
 
@@ -108,6 +109,56 @@ def _skid_steer(body: Body, exact: bool) -> Step:
     return step
 
 
+def _single_track(body: Body, exact: bool) -> Step:
+    return single_track(body.options.kinematics or {}, body.options.wheelbase or 1.0)
+
+
+def _diff_dynamic(body: Body, exact: bool) -> Step:
+    options = body.options.kinematics or {}
+    keys = "mass inertia wheel_radius track drag turn_drag resistance torque_constant gear response"
+    mass, inertia, radius, track, drag, turn_drag, resistance, constant, gear, response = (
+        float(options[key]) for key in keys.split()
+    )
+    most, voltage = _number(options, "torque_max", math.inf), _number(options, "voltage", math.inf)
+    half, scale = track / 2, constant * gear / resistance
+
+    def possible(wanted: float, rate: float) -> float:
+        own = constant * gear * rate
+        return min(max(min(max(wanted, scale * (-voltage - own)), scale * (voltage - own)), -most), most)
+
+    def gain(v: float, w: float, control: list[float]) -> tuple[float, float]:
+        both = 0.5 * (mass * (control[0] - v) / response + drag * v) * radius
+        apart = 0.5 * (inertia * (control[1] - w) / response + turn_drag * w) * radius / half
+        left = possible(both - apart, (v - half * w) / radius)
+        right = possible(both + apart, (v + half * w) / radius)
+        return ((left + right) / radius - drag * v) / mass, ((right - left) * half / radius - turn_drag * w) / inertia
+
+    def step(state: list[float], control: list[float], dt: float) -> None:
+        motor = constant * gear / radius
+        braking = 2 * motor**2 / resistance
+        fast = max(1 / response, (braking + drag) / mass, (braking * half**2 + turn_drag) / inertia)
+        parts = int(min(max(math.ceil(dt * max(1 / _SUB_STEP, fast) - 1e-9), 1), 10_000))
+        h = dt / parts
+        left, right = state[3:]
+        v, w = 0.5 * radius * (left + right), 0.5 * radius * (right - left) / half
+        for _ in range(parts):
+            a = gain(v, w, control)
+            b = gain(v + a[0] * h / 2, w + a[1] * h / 2, control)
+            c = gain(v + b[0] * h / 2, w + b[1] * h / 2, control)
+            d = gain(v + c[0] * h, w + c[1] * h, control)
+            v1, w1 = (y + h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]) for i, y in enumerate((v, w)))
+            vm, wm = 0.5 * (v + v1) + (a[0] - d[0]) * h / 8, 0.5 * (w + w1) + (a[1] - d[1]) * h / 8
+            middle, turn = h / 24 * (5 * w + 8 * wm - w1), h / 6 * (w + 4 * wm + w1)
+            for share, angle in ((v, 0.0), (4 * vm, middle), (v1, turn)):
+                state[0] += h / 6 * share * math.cos(state[2] + angle)
+                state[1] += h / 6 * share * math.sin(state[2] + angle)
+            state[2] += turn
+            v, w = v1, w1
+        state[3:] = (v - half * w) / radius, (v + half * w) / radius
+
+    return step
+
+
 def _number(options: dict[str, Any], key: str, default: float) -> float:
     value = options.get(key)
     return float(value) if isinstance(value, (int, float)) and not math.isnan(value) else default
@@ -116,8 +167,12 @@ def _number(options: dict[str, Any], key: str, default: float) -> float:
 INNER: dict[str, tuple[int, Callable[[Body, bool], Step]]] = {
     "tricycle": (2, _tricycle),
     "skid_steer": (0, _skid_steer),
+    "single_track": (4, _single_track),
+    "diff_dynamic": (2, _diff_dynamic),
 }
 """Number of inner states and the motion of each drive."""
+_SPEEDS = {"single_track": slice(1, 4), "diff_dynamic": slice(0, 2)}
+"""Inner states of each drive that are 0 once something has stopped its body."""
 
 
 def ends_of(artifact: Artifact, body: Body, row: int, stop: Floats) -> Floats:
@@ -136,6 +191,8 @@ def ends_of(artifact: Artifact, body: Body, row: int, stop: Floats) -> Floats:
     pose, control, still = artifact.pose[:, row], artifact.control[:, row], artifact.stopped[:, row]
     ends = np.full((len(pose) - 1, 3), np.nan)
     for k in range(len(ends)):
+        if still[k] and body.drive in _SPEEDS:
+            inner[_SPEEDS[body.drive]] = [0.0] * len(inner[_SPEEDS[body.drive]])
         if math.isnan(pose[k, 0]) or still[k]:
             continue
         state = [*pose[k].tolist(), *inner]

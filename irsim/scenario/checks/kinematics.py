@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.components.options import CustomOptions
 from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, error, hint, warning
@@ -35,6 +36,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     if record.kinematics is None:
         return
     options: Any = record.kinematics
+    yield from _unfit(context, record)
     if options.steered and not record.wheelbase:
         yield hint(
             "wheelbase-default",
@@ -74,6 +76,33 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             (*context.entry_path(record, "kinematics"), "noise"),
             "this noise does not vanish at standstill: the object trembles even when commanded to rest",
             fix="lower 'alpha', or remove 'noise'",
+        )
+
+
+def _unfit(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    """What a drive with speeds of its own cannot do: be pushed, or follow behaviors by accelerations."""
+    options: Any = record.kinematics
+    path = context.entry_path(record, "kinematics")
+    if options.coasts and context.scenario.world.collision_mode == "contact":
+        yield error(
+            "drive-not-pushed",
+            path,
+            f"'{options.name}' has speeds of its own, which contacts cannot change: 'collision_mode: contact' needs "
+            "another drive",
+            given=options.name,
+            fix=f"kinematics: {{name: {'acker' if options.steered else 'diff'}}}, or another 'collision_mode'",
+        )
+    behavior = record.active_behavior
+    if options.mode == "acceleration" and behavior is not None and not isinstance(behavior, CustomOptions):
+        yield error(
+            "drive-by-acceleration",
+            (*path, "mode"),
+            f"the behavior '{getattr(behavior, 'name', '')}' gives speeds, but 'mode: acceleration' takes "
+            "accelerations",
+            given=options.mode,
+            allowed=["steer", "angular"],
+            fix="mode: steer",
+            edit=Edit("replace", (*path, "mode"), "steer"),
         )
 
 

@@ -23,6 +23,9 @@ obstacle:
 DRIVES = {
     "tricycle": ("name: tricycle, wheelbase: 0.8", "wheelbase"),
     "lagged": ("name: tricycle, wheelbase: 0.8, steer_rate: 1.2, steer_acce: 6, steer_lag: 0.1", "steer_lag"),
+    "diff_dynamic": ("name: diff_dynamic, mass: 25.0, torque_max: 1.0", "mass"),
+    "single_track": ("name: single_track, acce_max: 2.5", "acce_max"),
+    "kinematic": ("name: single_track, model: kinematic, mode: angular, steer_rate: 0.8", "wheelbase"),
     "skid_steer": ("name: skid_steer, preset: jackal, traction_left: 0.9, icr_ahead: 0.1", "icr_ahead"),
     "by_rate": ("name: tricycle, wheelbase: 0.8, mode: angular, steer_rate: 0.7, steer_lag: 0.1", "steer_lag"),
 }
