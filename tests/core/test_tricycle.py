@@ -11,7 +11,7 @@ import pytest
 import irsim
 import irsim._core as core
 from tests.core.driving import EULER, EXACT, driven, fine
-from tests.core.worlds import PI, assert_success, robot, scene
+from tests.core.worlds import PI, assert_success, collisions, robot, scene
 
 INF = math.inf
 BASE = 1.2
@@ -150,3 +150,13 @@ robot: {kinematics: {name: %s, wheelbase: 1.2}, state: [3, 3, 0], goal: [3, 3.6]
 """
     assert irsim.run(text=text % ("tricycle", 1.57), seed=1).outcome == "success"
     assert irsim.run(text=text % ("acker", 0.9), seed=1).outcome == "timeout"
+
+
+def test_two_that_meet_head_on_under_forces_do_not_touch() -> None:
+    """Nothing is free ahead then: the wheel must not creep on, though it turns aside."""
+    text = """
+world: {width: 14, height: 14, integration: exact, time_limit: 20}
+robot: {number: 2, kinematics: {name: tricycle}, distribution: {name: circle, center: [7, 7], radius: 5},
+        shape: {name: circle, radius: 0.25}, behavior: {name: sfm}}
+"""
+    assert collisions(irsim.run(text=text, seed=0)) == []

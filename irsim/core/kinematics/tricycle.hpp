@@ -88,8 +88,9 @@ inline Vec3 follow(const TricycleOptions& options, const Wish& wish) {
   const double speed = norm(wish.velocity), now = wish.extra[0];
   if (!(speed > wish.turning.min_speed)) return {};
   const double psi = clip(forward.error, -options.psi_max, options.psi_max);
-  const double rolling = std::min(speed * std::max(kMinRolling, std::cos(psi - now)),
-                                  std::max(wish.turning.max_forward, kMinRolling * speed * std::fabs(std::sin(psi))));
+  const double ahead = std::max(std::cos(psi), std::cos(now));  // share of the wheel's speed that the body drives ahead
+  double rolling = speed * std::max(kMinRolling, std::cos(psi - now));
+  if (rolling * ahead > wish.turning.max_forward) rolling = std::max(0.0, wish.turning.max_forward) / ahead;
   if (options.mode == Steering::steer) return {{rolling, psi, 0.0}};
   return {{rolling, turn_rate(psi - now, wish.turning), 0.0}};
 }
