@@ -81,8 +81,8 @@ def test_ten_seconds_are_those_of_fine_integration() -> None:
 @pytest.mark.parametrize(("v", "w"), [(1.2, 0.0), (0.8, 3.0), (-1.0, -4.0), (30.0, 0.0)])
 def test_energy_never_grows_when_braking(v: float, w: float) -> None:
     for drive in (base(), base(response=0.001), base(mass=500.0), base(voltage=0.5)):
-        found = speeds(driven(drive, at(v, w), [[0.0, 0.0]] * 400, 0.05))
-        energy = 0.5 * drive.mass * found[:, 0] ** 2 + 0.5 * drive.inertia * found[:, 1] ** 2
+        reached = speeds(driven(drive, at(v, w), [[0.0, 0.0]] * 400, 0.05))
+        energy = 0.5 * drive.mass * reached[:, 0] ** 2 + 0.5 * drive.inertia * reached[:, 1] ** 2
         assert (np.diff(energy) <= 1e-12 * energy[0]).all()
         assert energy[-1] < 0.95 * energy[0]
 

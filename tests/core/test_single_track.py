@@ -83,7 +83,7 @@ def test_a_constant_angle_gives_a_circle(vehicle: str, psi: float) -> None:
         radius = (VEHICLES[vehicle].values["front"] + VEHICLES[vehicle].values["rear"]) / math.tan(psi)
         if drive.model == "kinematic":
             assert np.hypot(path[:, 0], path[:, 1] - radius) == pytest.approx(abs(radius), abs=1e-6)
-        else:  # the speed is that of the centre of mass, and the yaw rate follows it: the rear axle is on the circle
+        else:  # the speed is at the centre of mass, and the yaw rate follows it: the rear axle is on the circle
             assert np.hypot(path[5:, 0], path[5:, 1] - radius) == pytest.approx(abs(radius), abs=1e-6)
 
 

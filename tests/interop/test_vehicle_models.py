@@ -37,8 +37,8 @@ def test_derivatives_are_theirs(vehicle: str) -> None:
         for parameters, rates, ours, size in models:
             state = [0.0, 0.0, steer, speed, heading, yaw, slip][:size]
             drive = car(vehicle, model=ours, tyres="linear")
-            found = core.single_track_rates(drive, [steer, speed, heading, yaw, slip], rate, gain)
-            np.testing.assert_allclose(found, rates(state, [rate, gain], parameters), rtol=1e-12, atol=1e-12)
+            computed = core.single_track_rates(drive, [steer, speed, heading, yaw, slip], rate, gain)
+            np.testing.assert_allclose(computed, rates(state, [rate, gain], parameters), rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("vehicle", NUMBERS)

@@ -21,7 +21,7 @@ class DiffDynamic(KinematicsOptions):
     gets at most `torque_max`, and what `voltage` drives against the voltage that a turning motor makes itself. So a
     heavy robot starts and stops slowly, and its top speed follows from its motors. The wheels roll without slip. Each
     step is integrated in small parts, whatever `world.integration`. The fourth and fifth state rows are the rates of
-    the left and the right wheel in rad/s. The usual numbers are those of a base of 10 kg, no particular robot. Contacts
+    the left and the right wheel in rad/s. The usual numbers describe a base of 10 kg, no particular robot. Contacts
     cannot push it.
     """
 
@@ -51,7 +51,7 @@ class DiffDynamic(KinematicsOptions):
     torque_max: Positive | None = 2.0
     """Largest torque of a wheel [N m]; null leaves it to the voltage."""
     voltage: Positive | None = 12.0
-    """Largest voltage of a motor [V]; null is no limit."""
+    """Largest voltage of a motor [V]; null is unlimited."""
     resistance: Positive = 2.0
     """Resistance of a motor [Ω]."""
     torque_constant: Positive = 0.03

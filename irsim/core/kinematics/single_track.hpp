@@ -1,4 +1,4 @@
-// Single track of a car: kinematic, or dynamic with tyres that slip. The equations are those of CommonRoad: Althoff and
+// Single track of a car: kinematic, or dynamic with tyres that slip. The equations are from CommonRoad: Althoff and
 // Wuersching, "CommonRoad: Vehicle Models", 2020, models KS and ST.
 #pragma once
 
@@ -234,7 +234,7 @@ inline Vec3 follow(const SingleTrackOptions& o, const Wish& wish) {
 }
 
 /// Derivatives of the state of CommonRoad: x, y, steering angle, speed, heading, and of the dynamic model yaw rate and
-/// slip angle. Its position is that of the rear axle in the kinematic model, of the centre of mass in the dynamic one.
+/// slip angle. Its position is the rear axle in the kinematic model, the centre of mass in the dynamic one.
 ///
 /// Args:
 ///   state: Steering angle, speed, heading, yaw rate, slip angle.

@@ -80,7 +80,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 
 def _unfit(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """What a drive with speeds of its own cannot do: be pushed, or follow behaviors by accelerations."""
+    """Limits of a drive with speeds of its own: it is not pushed, and behaviors do not drive it by accelerations."""
     options: Any = record.kinematics
     path = context.entry_path(record, "kinematics")
     if options.coasts and context.scenario.world.collision_mode == "contact":
