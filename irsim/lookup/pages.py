@@ -121,9 +121,16 @@ def _sensors(source: _Source) -> str:
     return (
         "`sensors: [{name: …}, …]`, a list. Lidars see all robots and obstacles that are not `unobstructed`.\n\n"
         + _components(source, "sensor")
-        + f"\n\n## Errors of lidars: `realism`\n\n{' '.join((LidarRealism.__doc__ or '').split())}\n\n"
+        + "\n\nErrors of lidars beyond Gaussian noise, and lidars that one can buy, are in [lidars.md](lidars.md).\n\n"
+        + COLOR
+    )
+
+
+def _lidars(source: _Source) -> str:
+    return (
+        f"## Errors: `realism`\n\n{' '.join((LidarRealism.__doc__ or '').split())}\n\n"
         + _keys(source, "robot.sensors.lidar2d.realism")
-        + f"\n\n## Lidars that one can buy: `device`\n\n{_devices()}\n\n{COLOR}"
+        + f"\n\n## Lidars that one can buy: `device`\n\n{_devices()}"
     )
 
 
@@ -258,6 +265,7 @@ PAGES: dict[str, tuple[str, Callable[[_Source], str]]] = {
     "kinematics": ("Kinematics", _kinematics),
     "behaviors": ("Behaviors", _behaviors),
     "sensors": ("Sensors", _sensors),
+    "lidars": ("Lidars as they are", _lidars),
     "distributions": ("Distributions", _distributions),
     "plot": ("Plot", _plot),
     "templates": ("Templates", _templates),
