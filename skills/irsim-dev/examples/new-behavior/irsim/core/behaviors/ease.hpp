@@ -8,7 +8,10 @@ namespace irsim {
 
 struct EaseOptions {
   double slow_radius;  // distance to the goal below which the speed falls [m]
-  static constexpr auto fields() { return std::make_tuple(field("slow_radius", &EaseOptions::slow_radius)); }
+  template <class Visit>
+  static constexpr auto fields(const Visit& visit) {
+    return visit(field("slow_radius", &EaseOptions::slow_radius));
+  }
 };
 
 inline void ease(const EaseOptions& options, const Decision& decision, Intent* intents) {
