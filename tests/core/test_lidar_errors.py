@@ -186,6 +186,18 @@ def test_glass_lets_slanted_beams_pass() -> None:
     assert look(wall(3.0, turn=0.5, material="glass")).valid[0] == 0
 
 
+def test_shaky_beams_pass_glass_as_well() -> None:
+    """Beams that point elsewhere than nominal see behind slanted glass what they see without it."""
+    rng = np.random.default_rng(3)
+    posts = [obstacle(pose=p, parts=[circle(0.1)]) for p in rng.uniform(-8, 8, (60, 3)).tolist()]
+    posts = [post for post in posts if math.hypot(*post.pose[:2]) > 2.0]
+    corners = [(math.cos(k), math.sin(k)) for k in np.arange(24) * PI / 12]
+    star = polygon(*[(x * (1.0 + 0.8 * (k % 2)), y * (1.0 + 0.8 * (k % 2))) for k, (x, y) in enumerate(corners)])
+    glass = obstacle(pose=[0, 0, 0], parts=[star], static=True, material="glass")
+    shaky = {"number": 360, "noise": True, "std": 0.0, "angle_std": 0.1, "dropout": 1e-12}
+    np.testing.assert_array_equal(look(*posts, glass, **shaky).ranges, look(*posts, **shaky).ranges)
+
+
 def test_mirrors_show_what_they_reflect() -> None:
     mirror = obstacle(pose=[3, 0, PI / 4], parts=[rectangle(0.002, 2)], static=True, material="mirror")
     state = look(mirror, obstacle(pose=[3, 4, 0], parts=[circle(1.0)]), obstacle(pose=[3, -4, 0], parts=[circle(0.5)]))

@@ -93,11 +93,18 @@ def test_a_misspelt_word_is_answered_at_once(topic: str, read_as: str, said: str
 
 
 def test_several_topics_are_answered_briefly_and_each_thing_once() -> None:
-    text = explanation("compass, weather, rain, magnetometer, ice, doorway, corridor-passing, feet, mph, drone, uav", None)
+    text = explanation(
+        "compass, weather, rain, magnetometer, ice, doorway, corridor-passing, feet, mph, drone, uav", None
+    )
     assert text.count("The world is flat and seen from above") == 1
     assert text.count("1 in = 0.0254 m") == 1
     assert text.count("keeps its height is kinematics omni") == 1
-    for said in ("rain: see limits above", "magnetometer: see compass above", "uav: see drone above", "1 mph = 0.44704 m/s"):
+    for said in (
+        "rain: see limits above",
+        "magnetometer: see compass above",
+        "uav: see drone above",
+        "1 mph = 0.44704 m/s",
+    ):
         assert f"== {said}" in text
     assert "```yaml" not in text  # whole templates come alone
     assert "lookup with topic: doorway, alone, returns its YAML" in text

@@ -17,6 +17,14 @@ bool is_blind(const LidarErrors& errors, double angle) {
   });
 }
 
+/// A fan with the beams of another one, all turned by the angle whose cosine and sine are `turn`; nothing is cast yet.
+Fan turned(const Sensing& s, const Fan& fan, Vec2 turn) {
+  Fan out(s.spare, fan.origin(), rotate(fan.heading(), turn), s.mount, fan.reach());
+  out.widen(fan);
+  for (int i = 0; i < s.mount.count; ++i) out.aim(i, rotate(fan.beam(i), turn));
+  return out;
+}
+
 /// Let light pass through glass that it does not meet from ahead: what is behind is seen instead.
 void pass_glass(const Sensing& s, const Fan& fan, Surface& surface) {
   BeamBuffers& beams = s.buffers;
@@ -28,8 +36,7 @@ void pass_glass(const Sensing& s, const Fan& fan, Surface& surface) {
   int first = 0;
   while (first < n && !passes(first)) ++first;
   if (first == n) return;
-  Fan behind(s.spare, fan.origin(), fan.heading(), s.mount, fan.reach());
-  for (int i = 0; i < n; ++i) behind.aim(i, fan.beam(i));
+  Fan behind = turned(s, fan, {1.0, 0.0});
   cast_at(behind, s,
           [&](int object) { return object != s.mount.object && s.world.material[object] != Material::glass; });
   for (int i = first; i < n; ++i) {
@@ -86,10 +93,7 @@ void widen_beams(const LidarErrors& errors, const Sensing& s, const Fan& fan) {
       for (int i = 0; i < n; ++i) ranges[i] = fan.hit(i) < 0 ? kInfinity : fan.range(i);
       continue;
     }
-    const Vec2 turn = unit(aside);
-    Fan ray(s.spare, fan.origin(), rotate(fan.heading(), turn), s.mount, fan.reach());
-    ray.widen(fan);
-    for (int i = 0; i < n; ++i) ray.aim(i, rotate(fan.beam(i), turn));
+    Fan ray = turned(s, fan, unit(aside));
     cast_at(ray, s, [&](int object) { return object != s.mount.object; });
     for (int i = 0; i < n; ++i) {
       ranges[i] = ray.hit(i) < 0 ? kInfinity : ray.range(i);

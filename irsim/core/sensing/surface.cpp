@@ -1,5 +1,6 @@
 #include "sensing/surface.hpp"
 
+#include "geometry/predicates.hpp"
 #include "maps/occupancy.hpp"
 
 namespace irsim {
@@ -13,11 +14,7 @@ Vec2 normal_to(Vec2 along) {
   return length > 0.0 ? Vec2{along.y, -along.x} * (1.0 / length) : Vec2{1.0, 0.0};
 }
 
-double distance_to(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 along = b - a;
-  const double length2 = squared(along), t = length2 > 0.0 ? clip(dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
-  return norm(p - (a + along * t));
-}
+double distance_to(Vec2 p, Vec2 a, Vec2 b) { return norm(p - nearest_on_segment(a, b, p)); }
 
 }  // namespace
 
