@@ -70,7 +70,7 @@ def render_run(
     scenario = with_look(scenario_of(opened, limits), style, theme, printed=printed, as_strip=strip is not None)
     env = Env(scenario, seed=int(opened.meta["seed"]), display=False, log_level="ERROR")
     move, table = follow_record(opened, env), scene_table(env.scenario, env.seed, None)
-    given = ["--steps", str(last), *([] if size is None else ["--size", str(size)]), *region_options(region)]
+    given = ["--step", str(last), *([] if size is None else ["--size", str(size)]), *region_options(region)]
     given += [] if strip is None else ["--strip", str(strip)]
     given += look_options(style, theme, printed)
     reproduce = " ".join(["irsim render", opened.id, *given, "-o", str(out)])

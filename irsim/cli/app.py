@@ -6,6 +6,7 @@ The first sentence of a command's docstring is its help, and what ``irsim --help
 
 from __future__ import annotations
 
+import shlex
 from importlib import import_module
 from typing import Annotated, Any
 
@@ -16,6 +17,7 @@ from irsim.cli.guard import INTERRUPTED, again, handle_errors, say_interrupted
 from irsim.cli.names import finished
 from irsim.cli.sentences import SENTENCES
 from irsim.common.installed import version
+from irsim.common.text import clean
 
 __all__ = ["COMMANDS", "FILES_RULE", "app", "loaded"]
 
@@ -59,6 +61,16 @@ PANELS = {
     "Other programs": ("map", "bridge", "skills"),
 }
 """Groups of commands in the help."""
+TOOLS = {
+    "lookup": "describe",
+    "validate_scenario": "validate",
+    "render_snapshot": "render",
+    "run_episode": "run",
+    "inspect_run": "inspect",
+    "export_run": "export",
+    "write_scenario": "new",
+}
+"""Name of a tool of the MCP server, for which an agent may look among the commands -> the command that does it."""
 
 
 def loaded(name: str) -> Any:
@@ -91,6 +103,13 @@ class Commands(TyperGroup):
         command = typer.main.get_command(target)
         command.name = cmd_name
         return finished(command, cmd_name)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return the command of some words; the name of a tool of the MCP server is answered with its command."""
+        if args and (meant := TOOLS.get(args[0])):
+            words = shlex.join(["irsim", meant, *(clean(word, 60) for word in args[1:])])
+            ctx.fail(f"{args[0]!r} is a tool of irsim-mcp. The command is: {words}")
+        return super().resolve_command(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:
         """Run a command; Ctrl-C while it is imported ends it as later."""

@@ -256,7 +256,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     failed = [row for row in result.rows if row.failed]
     for row in failed[: MAX_FAILED_LINES if suite else None]:
         failures = list(row.failures.items())[:MAX_FAILURES]
-        robots = [f"{clean(what)} {n} of {row.episodes}" for what, n in failures]
+        robots = [clean(what) + (f" {n} of {row.episodes}" if row.episodes > 1 else "") for what, n in failures]
         combination = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
         out.print(f"failed: {combination}: {seeds_of(row.failed, MAX_FAILED_SEEDS)} ({', '.join(robots)})")
     if suite and len(failed) > MAX_FAILED_LINES:

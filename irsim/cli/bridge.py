@@ -20,7 +20,7 @@ from irsim.cli import bridge_splats
 from irsim.cli.bridge_likeness import compare_pedestrians, pedestrians_suite
 from irsim.cli.bridge_pedestrians import import_pedestrians
 from irsim.cli.guard import FAILED, handle_errors
-from irsim.cli.options import Json
+from irsim.cli.options import Json, seed_option
 from irsim.cli.output import console, existing, show_written
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
@@ -88,7 +88,7 @@ def import_bag(
             show_default=False,
         ),
     ] = None,
-    radius: Annotated[float, typer.Option(help="Radius of the robot, in metres.")] = 0.2,
+    radius: Annotated[float, typer.Option("--robot-radius", help="Radius of the robot, in metres.")] = 0.2,
     step_time: Annotated[float, typer.Option(help="Step time of the scenario, in seconds.")] = 0.1,
     start: Annotated[float, typer.Option("--start", help="Start of the window of time, in seconds.")] = 0.0,
     end: Annotated[float | None, typer.Option("--end", help="End of the window of time, in seconds.")] = None,
@@ -134,7 +134,7 @@ def _mount(text: str | None) -> tuple[float, float, float] | None:
 def export_scene(
     scenario: Annotated[Path, typer.Argument(metavar="FILE", help="Scenario; it is not run.")],
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="File to write: .usda, .usdc or .usdz.")],
-    seed: Annotated[int, typer.Option(min=0, max=2**64 - 1, help="Seed of what is drawn at random.")] = 0,
+    seed: Annotated[int, seed_option("Random seed, 0 or more. Default: 0.")] = 0,
     force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
 ) -> None:
     """Write the start of a scenario as a stage of OpenUSD. For a whole run, see `irsim export --to usd`."""

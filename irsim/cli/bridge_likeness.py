@@ -43,7 +43,7 @@ def compare_pedestrians(
     goal: Annotated[
         Goal, typer.Option(help="Where people want to go: where their recording ends, or straight on.")
     ] = Goal.both,
-    radius: Annotated[float, typer.Option(help="Radius of a person, in metres.")] = RADIUS,
+    radius: Annotated[float, typer.Option(help="Radius of a pedestrian, in metres.")] = RADIUS,
     json_output: Json = False,
 ) -> None:
     """Say how human behaviors are: each recorded person walks 4.8 s by a behavior, among the others as recorded.

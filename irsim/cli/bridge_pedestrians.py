@@ -16,7 +16,7 @@ from irsim.bridges.pedestrians.importing import import_pedestrians as convert
 from irsim.bridges.pedestrians.scenario import Layout
 from irsim.bridges.pedestrians.suite import Episodes
 from irsim.bridges.pedestrians.tracks import FORMATS, Window
-from irsim.cli.options import Json
+from irsim.cli.options import Json, seed_option
 from irsim.cli.output import console, existing, show_written
 from irsim.common.text import plural
 from irsim.diagnostics.errors import InputError
@@ -99,7 +99,10 @@ def import_pedestrians(
             show_default="what the robot needs, with room to give way",
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(help="Chooses the windows of the suite, if the recording has more.")] = 0,
+    seed: Annotated[
+        int,
+        seed_option("Random seed, 0 or more: chooses the windows of the suite, if the recording has more. Default: 0."),
+    ] = 0,
     force: Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")] = False,
     json_output: Json = False,
 ) -> None:

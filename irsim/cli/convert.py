@@ -50,7 +50,10 @@ def convert(
 def export_policy(
     training: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of the training.")],
     out: Annotated[
-        Path, typer.Argument(metavar="FILE", help="File to write, .npz or .onnx; its card and curve get .md and .png.")
+        Path,
+        typer.Option(
+            "-o", "--out", metavar="FILE", help="File to write, .npz or .onnx; its card and curve get .md and .png."
+        ),
     ],
     license: Annotated[str, typer.Option("--license", help="Licence of the weights, such as MIT.")] = "",
     description: Annotated[

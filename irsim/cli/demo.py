@@ -10,7 +10,7 @@ from rich.text import Text
 
 from irsim import api
 from irsim.bundled import templates
-from irsim.cli.options import Json
+from irsim.cli.options import Json, seed_option
 from irsim.cli.output import console, existing, print_json, progress
 from irsim.cli.run import show_result
 from irsim.common.files import check_suffix
@@ -26,7 +26,7 @@ def demo(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Animation file to write.")] = Path(
         "irsim-demo.gif"
     ),
-    seed: Annotated[int, typer.Option(min=0, max=2**64 - 1, help="Random seed.")] = _SEED,
+    seed: Annotated[int, seed_option(f"Random seed, 0 or more. Default: {_SEED}.")] = _SEED,
     json_output: Json = False,
 ) -> None:
     """Simulate a bundled scenario and write an animation of it to the current directory."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -14,7 +15,9 @@ from irsim.cli.guard import again, going_on
 from irsim.cli.options import Json
 from irsim.cli.output import console, existing, print_json, progress, show_written, size_text
 from irsim.common.text import plural
+from irsim.diagnostics.errors import InputError
 from irsim.policies.converters.convert import parse_options
+from irsim.runs.store import is_run
 
 __all__ = ["export"]
 
@@ -83,6 +86,8 @@ def export(
     chosen: str | list[str] | None = objects
     if objects is not None and objects not in CHOICES:
         chosen = [name.strip() for name in objects.split(",") if name.strip()]
+    if (file := next((one for one in runs or () if Path(one).suffix and not is_run(one)), None)) is not None:
+        raise InputError(f"{file!r} is no recorded run", f"name the file to write with -o: -o {shlex.quote(file)}")
     before = existing(out)
     with going_on(lambda: f"nothing was written; again: {again()}"), progress("exporting") as report:
         result = export_run(

@@ -28,7 +28,11 @@ __all__ = [
     "print_diagnostics",
     "print_findings",
     "print_warnings",
+    "tolerated_note",
 ]
+
+_DIFFERENCES = {"unknown-behavior": "D5", "behavior-for-other-drive": "D5"}
+"""Code of a problem that IR-SIM 2.12 tolerates -> the difference that says what irsim does; D4 of all others."""
 
 
 class UserImportError(CodedError, ImportError):
@@ -86,9 +90,20 @@ def print_warnings(findings: Sequence[Finding], file: str) -> None:
         file: File of the scenario.
     """
     print_findings([one for one in findings if one.severity != "hint"], file, stderr=True)
+    if note := tolerated_note(findings):
+        print(f"{note}: run and render go on, validate and --strict refuse it", file=sys.stderr)
     if hints := dict.fromkeys(one.code for one in findings if one.severity == "hint"):
         what = f"{plural(len(hints), 'hint')} ({', '.join(hints)}): irsim validate {shlex.quote(file)} explains"
         print(what, file=sys.stderr)
+
+
+def tolerated_note(findings: Sequence[Finding]) -> str:
+    """The start of the sentence on what IR-SIM 2.12 tolerates, with the differences to look up; empty without any."""
+    tolerated = [one for one in findings if one.tolerated]
+    if not tolerated:
+        return ""
+    ids = sorted({_DIFFERENCES.get(one.code, "D4") for one in tolerated})
+    return f"{plural(len(tolerated), 'problem')} that IR-SIM 2.12 tolerates (irsim describe {','.join(ids)})"
 
 
 def import_user_modules(names: Sequence[str] | None) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import shlex
 from functools import partial
 from typing import Any
 
 from irsim.cli.completion import offers
+from irsim.common.text import clean
 
-__all__ = ["OLD_NAMES", "PANELS", "finished"]
+__all__ = ["OLD_NAMES", "PANELS", "REFUSED", "finished"]
 
 OLD_NAMES: dict[str, dict[str, str]] = {
     "inspect": {"--from": "--first", "--to": "--last", "--robot": "--objects"},
@@ -26,6 +28,13 @@ OLD_NAMES: dict[str, dict[str, str]] = {
     },
 }
 """Command -> older name of an option, which another command uses for something else -> its name."""
+REFUSED: dict[str, dict[str, str]] = {
+    "render": {"--steps": "--step N draws the state after N steps (--steps limits the steps of a run)"},
+    "replay": {"--html": "a replay is always HTML: -o FILE names the page"},
+    "validate": {"--policy": "--for-policy NAME warns where the scene is not one that a policy is for"},
+    "bridge import-bag": {"--radius": "--robot-radius is the radius of the robot"},
+}
+"""Command -> a name of an option that it does not have, or that means something else in others -> what to write."""
 PANELS: dict[str, str] = {
     "Simulation": "--seed --seeds --steps --until --perturb --policy --policies --bridge --protocol --scenario "
     "--full --strict --import --max-objects",
@@ -57,12 +66,28 @@ def finished(command: Any, path: str) -> Any:
     for one in command.params:
         if (offer := offers(path, one.name)) is not None:
             one._custom_shell_complete = offer
-    if path in OLD_NAMES:
-        command.parse_args = partial(_parse, command.parse_args, OLD_NAMES[path])
+    command.parse_args = partial(_parse, command.parse_args, path, any("-o" in one.opts for one in options))
     return command
 
 
-def _parse(parse: Any, names: dict[str, str], context: Any, words: list[str]) -> Any:
-    """Parse words in which older names stand for the present ones."""
+def _parse(parse: Any, path: str, writes: bool, context: Any, words: list[str]) -> Any:
+    """Parse words in which older names stand for the present ones.
+
+    Args:
+        parse: How Click parses them.
+        path: Words of the command.
+        writes: Whether it has ``-o``, which an argument too many is probably meant for.
+        context: The context of Click.
+        words: The words.
+    """
     parts = [word.partition("=") for word in words]
-    return parse(context, [names.get(name, name) + sign + value for name, sign, value in parts])
+    for name, _, _ in parts:
+        if not context.resilient_parsing and (instead := REFUSED.get(path, {}).get(name)):
+            context.fail(f"irsim {path} has no {name}: {instead}.")
+    names = OLD_NAMES.get(path, {})
+    context.allow_extra_args |= writes
+    parsed = parse(context, [names.get(name, name) + sign + value for name, sign, value in parts])
+    if writes and context.args and not context.resilient_parsing:
+        extra = shlex.quote(clean(context.args[0], 100))
+        context.fail(f"{extra} is one argument too many; a file to write is named with -o: -o {extra}")
+    return parsed

@@ -2,19 +2,42 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from functools import partial
+from typing import Annotated, Any, Literal
 
 import typer
 
-__all__ = ["File", "Imports", "Json", "MaxObjects", "Perturb", "Seed", "Steps", "Strict", "Until"]
+from irsim.common.text import clean
+
+__all__ = ["File", "Imports", "Json", "MaxObjects", "Perturb", "Seed", "Steps", "Strict", "Until", "seed_option"]
+
+
+def seed_option(about: str, *, largest: int = 2**64 - 1) -> Any:
+    """The option ``--seed``: its help says which numbers it takes, and a message about another one says the largest.
+
+    Args:
+        about: What the seed decides, and its default.
+        largest: The largest seed.
+    """
+    return typer.Option(
+        "--seed", metavar="N", parser=partial(_whole_number, largest=largest), help=about, show_default=False
+    )
+
+
+def _whole_number(given: str | int, *, largest: int) -> int:
+    digits = str(given)
+    if digits.isascii() and digits.isdecimal() and len(digits.lstrip("0")) <= len(str(largest)):
+        number = int(digits.lstrip("0") or "0")
+        if number <= largest:
+            return number
+    raise typer.BadParameter(f"{clean(digits, 40)!r} is not a whole number from 0 to {largest}")
+
 
 File = Annotated[str, typer.Argument(help="Scenario file (YAML).", show_default=False)]
 Seed = Annotated[
     int | None,
-    typer.Option(
-        min=0,
-        max=2**64 - 1,
-        help="Random seed. Default: the seed of the scenario, otherwise a new one, which is reported.",
+    seed_option(
+        "Random seed, 0 or more. Default: the seed of the scenario, otherwise a new one, which is reported.",
     ),
 ]
 Steps = Annotated[

@@ -36,12 +36,14 @@ def render(
         ),
     ] = None,
     seed: Seed = None,
-    steps: Annotated[
+    step: Annotated[
         int | None,
         typer.Option(
+            "--step",
             min=0,
-            help="Number of steps to simulate: a picture shows the state after them (default: 0, the start), an "
-            "animation ends with them.",
+            metavar="N",
+            help="Step to draw: a picture shows the state after N steps (default: 0, the start), an animation ends "
+            "there.",
             show_default=False,
         ),
     ] = None,
@@ -56,7 +58,7 @@ def render(
             min=2,
             max=12,
             metavar="N",
-            help="Show N moments in one picture, from the start to --steps (default: to the end of the episode).",
+            help="Show N moments in one picture, from the start to --step (default: to the end of the episode).",
         ),
     ] = None,
     overlays: Annotated[
@@ -79,7 +81,7 @@ def render(
     """Draw a scenario, or a recorded run (its id, its folder or `last`), as a picture or an animation.
 
     The suffix of the file decides which. A run is drawn as it was recorded, with what a policy or a bridge did in it;
-    a picture without `--steps` shows its end.
+    a picture without `--step` shows its end.
 
     `--verbose` and `--json` add a table of its objects: drives, footprints, places, and the ranges of what is random.
     """
@@ -88,7 +90,7 @@ def render(
     with progress("drawing") as report:
         check_suffix(out, [*PICTURE_FORMATS, *MOVING_SUFFIXES])
         shown_as: dict[str, Any] = {
-            "steps": steps, "size": size, "region": region, "strip": strip, "progress": report,
+            "steps": step, "size": size, "region": region, "strip": strip, "progress": report,
             "style": style, "theme": theme, "printed": printed,
             "overlays": None if overlays is None else overlays.split(","), "limits": limits_for(max_objects),
         }  # fmt: skip

@@ -10,7 +10,6 @@ import typer
 
 from irsim.cli.options import Json
 from irsim.cli.output import console, existing, print_json, progress, show_written, size_text
-from irsim.runs.files import RunError
 from irsim.runs.reading import open_run
 from irsim.runs.replay.export import replay as write
 
@@ -19,14 +18,15 @@ __all__ = ["replay"]
 
 def replay(
     run: Annotated[str, typer.Argument(help="Id or folder of a run, or 'last'.")] = "last",
-    file: Annotated[
-        Path | None,
-        typer.Argument(help="File to write. Default: RUN.html in the current directory.", show_default=False),
-    ] = None,
-    html: Annotated[bool, typer.Option("--html", help="Write one HTML file, the only format.")] = True,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", metavar="OUT", help="File to write, instead of the argument.", show_default=False),
+        typer.Option(
+            "-o",
+            "--out",
+            metavar="FILE",
+            help="File to write, .html. Default: RUN.html in the current directory.",
+            show_default=False,
+        ),
     ] = None,
     show: Annotated[bool, typer.Option("--open", help="Also open the page in the browser.")] = False,
     json_output: Json = False,
@@ -35,10 +35,8 @@ def replay(
 
     The page needs neither network nor other files. `irsim run FILE --record` records a run.
     """
-    if file is not None and out is not None:
-        raise RunError("bad-argument", f"two output files are given, '{file}' and '{out}'", "give one file")
     opened = open_run(run)
-    target = out or file or Path(f"{opened.id}.html")
+    target = out or Path(f"{opened.id}.html")
     before = existing(target)
     with progress("packing"):
         result = write(opened, target)

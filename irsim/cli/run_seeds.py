@@ -72,9 +72,9 @@ def _look(result: RunsResult, shown: RunResult) -> str:
     """The command that draws the moment in which an episode was decided."""
     step = shown.decisive_step or shown.steps
     if shown.run_id is not None:
-        return f"irsim render {shown.run_id} --steps {step} -o failed.png"
+        return f"irsim render {shown.run_id} --step {step} -o failed.png"
     if shown.perturb:  # which only a record can repeat in a picture
-        return f"{shown.reproduce} --record && irsim render last --steps {step} -o failed.png"
+        return f"{shown.reproduce} --record && irsim render last --step {step} -o failed.png"
     extra = ["--policy", shown.policy or shown.behavior] if shown.policy or shown.behavior else []
-    words = ["irsim", "render", result.scenario, "--seed", str(shown.seed), *extra, "--steps", str(step)]
+    words = ["irsim", "render", result.scenario, "--seed", str(shown.seed), *extra, "--step", str(step)]
     return shlex.join([*map(str, words), "-o", "failed.png"])

@@ -11,6 +11,7 @@ import typer
 
 from irsim.cli.findings import print_findings
 from irsim.cli.guard import INVALID, again, going_on
+from irsim.cli.options import seed_option
 from irsim.cli.output import console, show_written
 from irsim.common.extras import require
 from irsim.learning.tasks.files import open_task
@@ -67,7 +68,7 @@ def train(
     ] = None,
     seed: Annotated[
         int | None,
-        typer.Option("--seed", min=0, max=2**32 - 1, help="Seed of weights, exploration and samples. Default: 0."),
+        seed_option("Random seed of weights, exploration and samples, 0 or more. Default: 0.", largest=2**32 - 1),
     ] = None,
     stop_at: Annotated[
         float | None,
@@ -128,7 +129,7 @@ def train(
             max_time=max_time, threads=threads, on_round=show, **more,
         )  # fmt: skip
     show_written(best, "the best model")
-    out_console.print(f"next: irsim export-policy {out} policy.npz makes a file that needs no torch", soft_wrap=True)
+    out_console.print(f"next: irsim export-policy {out} -o policy.npz makes a file that needs no torch", soft_wrap=True)
 
 
 def _go_on(out: Path, threads: int, workers: int) -> str:

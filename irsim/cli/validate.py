@@ -11,9 +11,9 @@ from rich.text import Text
 
 from irsim import api
 from irsim.benchmarks.suite import SUITES, is_suite
-from irsim.cli.findings import import_user_modules, limits_for, not_found, print_findings
+from irsim.cli.findings import import_user_modules, limits_for, not_found, print_findings, tolerated_note
 from irsim.cli.guard import INVALID
-from irsim.cli.options import Imports, MaxObjects
+from irsim.cli.options import Imports, MaxObjects, seed_option
 from irsim.cli.output import console, print_json, progress
 from irsim.common.files import write_atomically
 from irsim.common.text import clean, seconds
@@ -63,15 +63,18 @@ def validate(
     ] = False,
     seed: Annotated[
         int | None,
-        typer.Option(
-            min=0,
-            max=2**64 - 1,
-            help="Seed for --simulate and --table. Default: the seed of the scenario, otherwise 0.",
+        seed_option(
+            "Random seed of --simulate and --table, 0 or more. Default: the seed of the scenario, otherwise 0."
         ),
     ] = None,
     policy: Annotated[
         str | None,
-        typer.Option(help="Warn where a scene is not one that this policy is for.", show_default=False),
+        typer.Option(
+            "--for-policy",
+            metavar="NAME",
+            help="Also warn where a scene is not one that this policy is for; irsim policies lists them.",
+            show_default=False,
+        ),
     ] = None,
     imports: Imports = None,
     max_objects: MaxObjects = None,
@@ -170,6 +173,8 @@ def _show(report: ValidationReport, file: str, text: str | None, *, stderr: bool
             Text.assemble(("fixed", "bold green"), f" {item.code}  {line}{clean(item.change, 300)}"), soft_wrap=True
         )
     print_findings(report.findings, file, text=text, stderr=stderr)
+    if note := tolerated_note(report.findings):
+        out.print(f"{note}: irsim run warns and goes on, unless --strict is given")
     if report.dry_run is not None:
         show_dry_run(report.dry_run, out)
     if report.valid:

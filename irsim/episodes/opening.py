@@ -121,7 +121,7 @@ def reproduce_command(
         verb: The command.
         path: The scenario file, None for a text.
         seed: The seed; None leaves it out.
-        steps: Number of steps; None leaves it out.
+        steps: The limit of steps, for ``render`` the step that is drawn; None leaves it out.
         strict: Whether the scenario was read strictly.
         imports: Modules that were imported.
         extra: Further words.
@@ -130,7 +130,7 @@ def reproduce_command(
     if seed is not None:
         words += ["--seed", str(seed)]
     if steps is not None:
-        words += ["--steps", str(steps)]
+        words += ["--step" if verb == "render" else "--steps", str(steps)]
     if strict:
         words.append("--strict")
     for name in imports:

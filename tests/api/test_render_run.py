@@ -41,13 +41,13 @@ def rows_with_robot(picture: str) -> float:
 def test_a_picture_shows_what_the_policy_did(run: str) -> None:
     for step in (0, 30):
         done = CliRunner().invoke(
-            app, ["render", run, "-o", f"at-{step}.png", "--steps", str(step), "--overlays", "goals"]
+            app, ["render", run, "-o", f"at-{step}.png", "--step", str(step), "--overlays", "goals"]
         )
         assert done.exit_code == 0, done.output
     shown = render_run(run, "end.png")
     assert (shown.steps, shown.frames) == (30, 1)
     assert rows_with_robot("at-30.png") > rows_with_robot("at-0.png") + 0.1
-    assert shown.reproduce.startswith(f"irsim render {run} --steps 30 ")
+    assert shown.reproduce.startswith(f"irsim render {run} --step 30 ")
 
 
 def test_a_strip_and_an_animation_end_with_the_run(run: str) -> None:
@@ -65,7 +65,7 @@ def test_what_would_change_a_run_is_refused(run: str) -> None:
         done = CliRunner().invoke(app, ["render", run, "-o", "a.png", *option])
         assert done.exit_code == 2, done.output
         assert "cannot change the recorded run" in done.output
-    done = CliRunner().invoke(app, ["render", run, "-o", "a.png", "--steps", "31"])
+    done = CliRunner().invoke(app, ["render", run, "-o", "a.png", "--step", "31"])
     assert done.exit_code != 0
     assert "has no step 31" in done.output
     assert not Path("a.png").exists()

@@ -58,14 +58,14 @@ def test_a_suite() -> None:
 
 
 def test_pictures() -> None:
-    done = call("render", "scene.yaml", "-o", "a.png", "--steps", "3")
+    done = call("render", "scene.yaml", "-o", "a.png", "--step", "3")
     assert f"a picture {SAID}" in done.stderr
     assert SAID not in done.stdout
-    assert SAID not in call("render", "plain.yaml", "-o", "a.png", "--steps", "3").stderr
+    assert SAID not in call("render", "plain.yaml", "-o", "a.png", "--step", "3").stderr
     assert SAID not in call("render", "scene.yaml", "-o", "a.png").stderr, "nothing is simulated before the start"
     answer = json.loads(call("render", "scene.yaml", "-o", "a.png", "--strip", "2", "--json").stdout)
     assert [item["code"] for item in answer["warnings"]] == ["bridges-not-opened"]
-    assert call("render", "scene.yaml", "-o", "a.gif", "--steps", "2").stderr.count(SAID) == 1
+    assert call("render", "scene.yaml", "-o", "a.gif", "--step", "2").stderr.count(SAID) == 1
     assert [item.code for item in api.snapshot("scene.yaml", steps=2, draw=False).warnings] == ["bridges-not-opened"]
     assert api.snapshot("scene.yaml", draw=False).warnings == []
 

@@ -30,7 +30,7 @@ COMMANDS: dict[tuple[str, ...], tuple[str, ...]] = {
     ("diff-runs", "kept", "kept"): ("--tolerance",),
     ("benchmark", "room.yaml", "--steps", "2", "--workers", "1"): ("--seeds", "--max-objects"),
     ("benchmark", "room.yaml", "--seeds", "1", "--workers", "1"): ("--steps",),
-    ("render", "room.yaml", "-o", "a.png"): ("--seed", "--steps", "--size", "--strip", "--max-objects"),
+    ("render", "room.yaml", "-o", "a.png"): ("--seed", "--step", "--size", "--strip", "--max-objects"),
     ("map", "export", "room.yaml", "-o", "out/room.yaml"): ("--seed",),
     ("bridge", "export-scene", "room.yaml", "-o", "room.sdf", "--force"): ("--seed",),
     MAP: ("--level", "--height", "--resolution", "--headroom", "--slope", "--climb", "--radius", "--meters-per-unit"),
@@ -72,7 +72,7 @@ def test_all_extremes(irsim: Run, part: int) -> None:
 @pytest.mark.parametrize("steps", [2**31, 10**400])
 def test_a_picture_after_more_steps_than_a_run_may_have_is_refused(irsim: Run, steps: int) -> None:
     Path("room.yaml").write_text(ROOM)
-    assert "steps are too many" in irsim("render", "room.yaml", "-o", "a.png", "--steps", steps, code=2).stderr
+    assert "steps are too many" in irsim("render", "room.yaml", "-o", "a.png", "--step", steps, code=2).stderr
 
 
 @pytest.mark.parametrize(

@@ -15,9 +15,9 @@ from typing import Any
 import pytest
 import typer
 
-from irsim.cli.app import COMMANDS, app
+from irsim.cli.app import COMMANDS, TOOLS, app
 from irsim.cli.completion import offers
-from irsim.cli.names import OLD_NAMES
+from irsim.cli.names import OLD_NAMES, REFUSED
 from irsim.lookup import lookup
 from tests.cli.conftest import Run
 
@@ -36,19 +36,20 @@ MEANINGS = {
     "--out": "[Ff]ile|to write|Folder (of|for)|Picture",
     "--perturb": "Let the seed change starts",
     "--policies": "behaviors|Behaviors",
-    "--policy": "[Pp]olicy",
-    "--radius": "^Radius of",
+    "--policy": "every robot",
+    "--radius": "^Radius of a pedestrian",
     "--resolution": "Side of a cell",
     "--resume": "Go on with the",
     "--rotate": "^Turn",
     "--run": "Id or folder of a run",
-    "--seed": "[Ss]eed|drawn|[Cc]hooses",
+    "--seed": "^Random seed.*0 or more",
     "--seeds": "their number from 0, or a list of seeds: 20, 5-9, 1,4,7",
     "--set": "^Set KEY to VALUE, ",
     "--simulate": "[Ss]imulate",
     "--start": "Start of the window of time",
     "--step-time": "Step time",
-    "--steps": "umber of steps",
+    "--step": "picture (of this step|shows the state after N steps)",
+    "--steps": "^Maximum number of steps",
     "--strict": "Treat tolerated problems",
     "--workers": "[Pp]rocesses",
     "-o": "[Ff]ile|to write|Folder (of|for)|Picture",
@@ -93,6 +94,59 @@ def test_older_names_of_options_still_work_and_are_in_no_help(irsim: Run, room: 
     irsim("run", "room.yaml", "--record-to", "kept", code=0)
     new = irsim("inspect", "kept", "--first", "3", "--last", "9", "--objects", "all", code=0).stdout
     assert irsim("inspect", "kept", "--from", "3", "--to=9", "--robot", "all", code=0).stdout == new
+
+
+def said(text: str) -> str:
+    """The message of Click, without the frame and the breaks of its lines."""
+    return " ".join(re.sub("[│╭╰─╮╯]", " ", text).split())
+
+
+def test_a_name_that_other_commands_use_for_something_else_is_refused_with_the_right_one(irsim: Run) -> None:
+    known = dict(every_command())
+    for words, names in REFUSED.items():
+        own = {name for one in known[words].params for name in one.opts}
+        for old, instead in names.items():
+            assert old not in own
+            assert any(name in own for name in re.findall(r"-{1,2}[a-z-]+", instead))
+            for given in (old, f"{old}=3"):
+                answer = said(irsim(*words.split(), given, code=2).stderr)
+                assert f"irsim {words} has no {old}: {instead}" in answer
+
+
+def test_every_command_that_writes_a_file_takes_its_name_with_o(irsim: Run, room: Path, tmp_path: Path) -> None:
+    for words, command in every_command():
+        for one in command.params:
+            if one.param_type_name == "argument":
+                assert not re.search("[Ff]ile to write", one.help or ""), words
+            elif "--out" in one.opts:
+                assert "-o" in one.opts, words
+    irsim("run", "room.yaml", "--record", code=0)
+    before = set(tmp_path.iterdir())
+    for wrong in (("replay", "last", "a.html"), ("map", "export", "room.yaml", "a.html", "-o", "b.yaml")):
+        answer = said(irsim(*wrong, code=2).stderr)
+        assert "a.html is one argument too many; a file to write is named with -o: -o a.html" in answer, answer
+    assert "name the file to write with -o: -o a.csv" in irsim("export", "last", "a.csv", code=2).stderr
+    assert set(tmp_path.iterdir()) == before
+    irsim("replay", "last", "-o", "a.html", code=0)
+    assert (tmp_path / "a.html").is_file()
+
+
+def test_a_tool_of_the_server_is_answered_with_its_command(irsim: Run) -> None:
+    assert "The command is: irsim describe robot.behavior" in said(irsim("lookup", "robot.behavior", code=2).stderr)
+    assert set(TOOLS.values()) <= set(COMMANDS)
+    assert set(TOOLS).isdisjoint(COMMANDS)
+    assert "Did you mean 'run'?" in said(irsim("rn", code=2).stderr)
+
+
+def test_the_help_says_which_seeds_there_are_and_the_message_which_is_the_largest(irsim: Run, room: Path) -> None:
+    for words in (["demo"], ["run"], ["train"], ["validate"]):
+        shown = irsim(*words, "--help", code=0).stdout
+        assert "18446744073709551615" not in shown.replace(" ", "").replace("│", "")
+        assert "0 or more" in said(shown)
+    for wrong in (-1, 2**64, "1.5", "seven"):
+        answer = said(irsim("run", "room.yaml", "--seed", wrong, code=2).stderr)
+        assert f"'{wrong}' is not a whole number from 0 to 18446744073709551615" in answer
+    assert f"--seed {2**64 - 1}" in irsim("run", "room.yaml", "--seed", 2**64 - 1, code=0).stdout
 
 
 def test_the_help_is_grouped(irsim: Run) -> None:

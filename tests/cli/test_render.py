@@ -15,12 +15,12 @@ from tests.cli.conftest import Run, parsed
 
 @pytest.mark.parametrize(("suffix", "kind"), [("png", "PNG"), ("gif", "GIF")])
 def test_draws_pictures_and_animations(irsim: Run, room: Path, suffix: str, kind: str) -> None:
-    result = irsim("render", "room.yaml", "-o", f"room.{suffix}", "--steps", "5", "--seed", "3", code=0)
+    result = irsim("render", "room.yaml", "-o", f"room.{suffix}", "--step", "5", "--seed", "3", code=0)
     with Image.open(f"room.{suffix}") as picture:
         assert picture.format == kind
         assert getattr(picture, "n_frames", 1) == (6 if kind == "GIF" else 1)
     assert f"wrote room.{suffix}" in result.stdout.replace(str(Path.cwd()) + "/", "")
-    assert result.stdout.rstrip().endswith(f"irsim render room.yaml --seed 3 --steps 5 -o room.{suffix}")
+    assert result.stdout.rstrip().endswith(f"irsim render room.yaml --seed 3 --step 5 -o room.{suffix}")
 
 
 def test_size_is_the_longer_side(irsim: Run, room: Path) -> None:
@@ -33,7 +33,7 @@ def test_size_is_the_longer_side(irsim: Run, room: Path) -> None:
 
 @pytest.mark.parametrize("suffix", ["png", "gif"])
 def test_a_part_of_the_world(irsim: Run, room: Path, suffix: str) -> None:
-    region = ["--region", "-1", "0.5", "1", "1.5", "--size", "400", "--steps", "2"]
+    region = ["--region", "-1", "0.5", "1", "1.5", "--size", "400", "--step", "2"]
     data = parsed(irsim("render", "room.yaml", "-o", f"part.{suffix}", *region, "--json"))
     width, height = data["size"]
     assert width == 400
@@ -48,7 +48,7 @@ def test_no_part_of_any_world(irsim: Run, room: Path) -> None:
 
 
 def test_films_need_no_display_and_no_ffmpeg_of_the_system(irsim: Run, room: Path, tmp_path: Path) -> None:
-    assert irsim("render", "room.yaml", "-o", "room.mp4", "--steps", "5").exit_code == 0
+    assert irsim("render", "room.yaml", "-o", "room.mp4", "--step", "5").exit_code == 0
     assert (tmp_path / "room.mp4").read_bytes()[4:8] == b"ftyp"
 
 
@@ -58,12 +58,12 @@ def test_without_the_extra_the_ffmpeg_of_the_system_writes_films(
     installed = Path(imageio_ffmpeg.get_ffmpeg_exe())
     monkeypatch.setattr("irsim.graphics.encoding.video.find_spec", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
-    refused = irsim("render", "room.yaml", "-o", "room.mp4", "--steps", "5", code=2)
+    refused = irsim("render", "room.yaml", "-o", "room.mp4", "--step", "5", code=2)
     assert "missing-extra" in refused.output
     assert "pip install 'irsim-mcp[video]'" in refused.output
     assert not (tmp_path / "room.mp4").exists()
     (tmp_path / "ffmpeg").symlink_to(installed)
-    assert irsim("render", "room.yaml", "-o", "room.mp4", "--steps", "5").exit_code == 0
+    assert irsim("render", "room.yaml", "-o", "room.mp4", "--step", "5").exit_code == 0
     assert (tmp_path / "room.mp4").read_bytes()[4:8] == b"ftyp"
 
 
@@ -78,7 +78,7 @@ def test_demo_leaves_a_gif_and_says_where(irsim: Run, tmp_path: Path) -> None:
 
 
 def test_a_strip_is_the_picture_of_the_tool(irsim: Run, room: Path, tmp_path: Path) -> None:
-    data = parsed(irsim("render", "room.yaml", "-o", "strip.png", "--strip", "3", "--steps", "4", "--json"))
+    data = parsed(irsim("render", "room.yaml", "-o", "strip.png", "--strip", "3", "--step", "4", "--json"))
     assert (data["frames"], data["steps"]) == (3, 4)
     assert "--strip 3" in data["reproduce"]
     assert (tmp_path / "strip.png").read_bytes() == snapshot("room.yaml", strip=3, steps=4).png
@@ -88,7 +88,7 @@ def test_a_strip_is_the_picture_of_the_tool(irsim: Run, room: Path, tmp_path: Pa
 
 
 def test_overlays_are_those_of_the_tool(irsim: Run, room: Path, tmp_path: Path) -> None:
-    data = parsed(irsim("render", "room.yaml", "-o", "plan.png", "--overlays", "plan, goals", "--steps", "3", "--json"))
+    data = parsed(irsim("render", "room.yaml", "-o", "plan.png", "--overlays", "plan, goals", "--step", "3", "--json"))
     assert "--overlays plan,goals" in data["reproduce"]
     assert (tmp_path / "plan.png").read_bytes() == snapshot("room.yaml", steps=3, overlays=["plan", "goals"]).png
     irsim("render", "room.yaml", "-o", "bare.png", "--overlays", "", "--seed", "0", code=0)
@@ -143,7 +143,7 @@ def test_a_picture_does_not_replace_the_map_or_an_image_of_its_scenario(
 @pytest.mark.parametrize("more", [[], ["--strip", "2"]])
 def test_a_view_that_is_moved_is_said(irsim: Run, tmp_path: Path, more: list[str]) -> None:
     (tmp_path / "places.yaml").write_text(PLACES.replace("world: {", "world: {plot: {viewpoint: scout}, "))
-    drawn = ["render", "places.yaml", "-o", "places.png", "--steps", "1", *more]
+    drawn = ["render", "places.yaml", "-o", "places.png", "--step", "1", *more]
     out = irsim(*drawn).stdout
     assert "note: the picture shows only x " in out
     assert "as plot.viewpoint centres the view" in out
@@ -157,9 +157,9 @@ def test_a_view_that_is_moved_is_said(irsim: Run, tmp_path: Path, more: list[str
 @pytest.mark.parametrize("more", [[], ["--strip", "3"]])
 def test_a_picture_after_the_arrival_says_when_the_episode_ended(irsim: Run, tmp_path: Path, more: list[str]) -> None:
     (tmp_path / "places.yaml").write_text(PLACES)
-    late = irsim("render", "places.yaml", "-o", "places.png", "--steps", "80", *more)
+    late = irsim("render", "places.yaml", "-o", "places.png", "--step", "80", *more)
     assert "step 80 is beyond the end of the episode, which is step 29" in late.stdout
-    soon = irsim("render", "places.yaml", "-o", "places.png", "--steps", "20", *more)
+    soon = irsim("render", "places.yaml", "-o", "places.png", "--step", "20", *more)
     assert "beyond the end" not in soon.stdout
 
 

@@ -81,7 +81,7 @@ def test_the_robot_moves_from_tile_to_tile() -> None:
 def test_up_to_a_step_and_always_the_same() -> None:
     result = snapshot(text=SCENE, strip=3, steps=10)
     assert result.moments == [0, 5, 10]
-    assert "--steps 10" in result.reproduce
+    assert "--step 10" in result.reproduce
     assert "--strip 3" in result.reproduce
     assert snapshot(text=SCENE, strip=3, steps=10).png == result.png
     without = snapshot(text=SCENE, strip=3, steps=10, draw=False)

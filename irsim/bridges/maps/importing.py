@@ -89,7 +89,9 @@ def import_map(
     entries = _entries(kind, result, chosen) if obstacles else None
     trip = suggest_trip(result, values)
     if robot and trip is None:
-        raise BridgeError("bridge-file", "the map has no room for a robot", "leave out the robot, or try less --radius")
+        raise BridgeError(
+            "bridge-file", "the map has no room for a robot", "leave out the robot, or try less --inflate"
+        )
     sidecar = MapSidecar(
         scene_transform(result.frame, result.height, result.meters_per_unit, result.turn),
         result.frame,

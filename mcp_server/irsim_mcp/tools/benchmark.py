@@ -323,7 +323,8 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str], de
     shown |= {"diff": diff} if diff else {}
     if failed := seeds_of(row["failed"], _MAX_FAILED_SEEDS):
         robots = [
-            f"{clean(what)} {n} of {row['episodes']}" for what, n in list(row["failures"].items())[:_MAX_FAILURES]
+            clean(what) + (f" {n} of {row['episodes']}" if row["episodes"] > 1 else "")
+            for what, n in list(row["failures"].items())[:_MAX_FAILURES]
         ]
         shown["failed"] = f"{failed} ({', '.join(robots)})" if detailed else failed
     if row["incidents"]:

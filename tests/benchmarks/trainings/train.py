@@ -40,7 +40,7 @@ def commands(name: str, seed: int, folder: Path) -> list[str]:
     where = shlex.quote(str(folder))
     begin = f"irsim train {name} -o {where} --seed {seed} {RECIPES[name]}"
     train = f"irsim train --resume -o {where}" if folder.exists() else begin
-    return [train, f"irsim export-policy {where} {shlex.quote(str(folder / 'policy.npz'))} --license MIT"]
+    return [train, f"irsim export-policy {where} -o {shlex.quote(str(folder / 'policy.npz'))} --license MIT"]
 
 
 def main(name: str, seed: str, folder: str) -> None:

@@ -142,5 +142,5 @@ def test_the_command_trains_and_exports(tmp_path: Path) -> None:
     made = CliRunner().invoke(app, ["train", "sarl_circle", "--algo", "sarl", "-o", folder, "--steps", "1", *options])
     assert made.exit_code == 0, made.output
     assert "round 2" in made.output
-    out = CliRunner().invoke(app, ["export-policy", folder, str(tmp_path / "net.npz")])
+    out = CliRunner().invoke(app, ["export-policy", folder, "-o", str(tmp_path / "net.npz")])
     assert out.exit_code == 0, out.output

@@ -177,9 +177,9 @@ def test_the_commands_train_and_export(tmp_path: Path) -> None:
     assert refused.exit_code == 2
     assert "keeps its settings" in refused.output
     file = tmp_path / "policy.npz"
-    assert run.invoke(app, ["export-policy", folder, str(file)]).exit_code == 0
-    assert run.invoke(app, ["export-policy", folder, str(file)]).exit_code == 2  # it exists
-    assert run.invoke(app, ["export-policy", folder, str(file), "--force"]).exit_code == 0
+    assert run.invoke(app, ["export-policy", folder, "-o", str(file)]).exit_code == 0
+    assert run.invoke(app, ["export-policy", folder, "-o", str(file)]).exit_code == 2  # it exists
+    assert run.invoke(app, ["export-policy", folder, "-o", str(file), "--force"]).exit_code == 0
     described = run.invoke(app, ["policies", str(file), "--json"])
     assert json.loads(described.output)["drives"] == ["diff"]
     wrong = run.invoke(app, ["train", "-o", folder])
