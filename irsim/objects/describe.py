@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from irsim.common.installed import version
 from irsim.common.outline import BodyPart, Cells, Polygon, outline
 from irsim.components.maps._site import HALF, UNKNOWN
 from irsim.objects.drawing.kinds import kind_of
+from irsim.objects.drawing.signs import distinct_colors, shows_motion
 from irsim.objects.views import views
 from irsim.options.colors import rgb
 from irsim.scenario.resolve.resolved import ObjectRecord
@@ -39,7 +41,8 @@ def describe_scene(simulation: Simulation) -> SceneDescription:
 
     builder = SceneBuilder(simulation)
     place = {row: index for index, row in enumerate(agent_rows(simulation).tolist())}
-    objects = [_object(simulation, builder, place.get(row, -1), row) for row in range(len(scenario.objects))]
+    colors = distinct_colors(views(simulation))
+    objects = [_object(simulation, builder, colors, place.get(row, -1), row) for row in range(len(scenario.objects))]
     return SceneDescription(
         name=scenario.name,
         step_time=float(scenario.world.step_time),
@@ -60,7 +63,9 @@ def agent_rows(simulation: Simulation) -> NDArray[np.int64]:
     return np.array([i for i, record in enumerate(records) if not record.is_map], dtype=np.int64)
 
 
-def _object(simulation: Simulation, builder: SceneBuilder, index: int, row: int) -> SceneObject:
+def _object(
+    simulation: Simulation, builder: SceneBuilder, colors: Mapping[int, Any], index: int, row: int
+) -> SceneObject:
     record, state = simulation.scenario.objects[row], simulation.state
     pose = np.asarray(state.initial_state(row), dtype=np.float64)[:3]
     low, high = simulation.limits(row)
@@ -86,21 +91,22 @@ def _object(simulation: Simulation, builder: SceneBuilder, index: int, row: int)
         row=row,
         static=record.static,
         threshold=record.goal_threshold,
-        look=_look(simulation, builder, row),
+        look=_look(simulation, builder, colors, row),
     )
 
 
-def _look(simulation: Simulation, builder: SceneBuilder, row: int) -> Look:
+def _look(simulation: Simulation, builder: SceneBuilder, colors: Mapping[int, Any], row: int) -> Look:
     view = views(simulation)[row]
     if view.record.is_map:
         return Look((0.0, 0.0, 0.0))
     style = builder.style(view, {})
     return Look(
-        rgb(style.obj_color),
+        rgb(colors[view.id]),
         float(style.obj_alpha),
         goal=view.record.role == "robot" or bool(style.show_goal),
         arrow=bool(style.show_arrow),
         kind=kind_of(view.record),
+        motion=shows_motion(view.record),
     )
 
 

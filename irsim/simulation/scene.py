@@ -63,6 +63,7 @@ class Look:
         goal: Whether its goal is drawn.
         arrow: Whether an arrow shows where it points.
         kind: ``robot``, ``person``, ``thing`` (it moves, but is neither) or ``still``.
+        motion: Whether the mark in its body points where it moves; else it is its heading.
     """
 
     color: tuple[float, float, float]
@@ -70,6 +71,7 @@ class Look:
     goal: bool = False
     arrow: bool = False
     kind: Literal["robot", "person", "thing", "still"] = "still"
+    motion: bool = False
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,7 @@ from irsim.objects.drawing.object_marks import (
     view_mark,
     view_sector,
 )
+from irsim.objects.drawing.signs import shows_motion
 from irsim.objects.drawing.visible_sector import visible_sector
 from irsim.objects.sensors.contact import Contact2D
 from irsim.objects.sensors.drawing import draw_forces, draw_scan
@@ -278,7 +279,7 @@ class SceneBuilder:
 
     def heading_of(self, view: ObjectView, pose: Pose) -> float:
         """Where an object is heading [rad]: its heading, or the direction of its motion if its drive never turns it."""
-        if getattr(view.record.kinematics, "turns", True):
+        if not shows_motion(view.record):
             return pose[2]
         vx, vy = self.simulation.twist[view.row, :2].tolist()
         return math.atan2(vy, vx) if math.hypot(vx, vy) > MIN_ARROW_SPEED else pose[2]

@@ -12,8 +12,8 @@ from irsim.graphics.scene.glyphs import CROWD, SMALLER
 from irsim.graphics.scene.scene import Mark, Scene
 from irsim.graphics.scene.theme import Kind, Shades, Theme
 from irsim.objects.drawing.kinds import kind_of
+from irsim.objects.drawing.signs import distinct_colors
 from irsim.objects.views import views
-from irsim.options.colors import ACKER_COLOR, CYCLE, ROBOT_COLOR
 from irsim.simulation.events import Event, first_collisions
 
 if TYPE_CHECKING:
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["Crowd", "Thing", "read_things"]
 
 MANY_PEOPLE = 50
-_DISTINCT = 6
-"""Number of colours that all people can tell apart."""
 _CROWDED_PERSON, _CROWDED_SMALL_PERSON = 4.2, 3.8
 """Least radius of a person where there are many, in the normal layout and in others [u]."""
 State = Literal["", "arrived", "collided", "stopped"]
@@ -156,7 +154,7 @@ def read_things(
     )
     rows = [row for row in zip(objects, *columns, strict=True) if row[0].id in marks or row[0].id in images]
     hits = first_collisions(simulation, list(events))
-    colors = _colors([row[0] for row in rows])
+    colors = distinct_colors(objects)
     x0, x1, y0, y1 = layout.world
     things = list[Thing]()
     for view, (x, y, heading), appeared, arrived, stopped in rows:
@@ -217,14 +215,3 @@ def _state(arrived: bool, stopped: bool, hit: Event | None) -> State:
     if not stopped:
         return ""  # a robot that touched something and drives on has its star
     return "stopped" if hit is None else "collided"
-
-
-def _colors(shown: Sequence[ObjectView]) -> dict[int, Any]:
-    """The colour of each object; two to six robots whose colours were not chosen get one each."""
-    colors = {view.id: view.color if view.color != "none" else "k" for view in shown}
-    same = [view for view in shown if view.role == "robot" and view.color in (ROBOT_COLOR, ACKER_COLOR)]
-    others = {str(view.color) for view in shown if view.role == "robot"} - {ROBOT_COLOR, ACKER_COLOR}
-    free = [color for color in CYCLE[:_DISTINCT] if color not in others]
-    if 1 < len(same) <= len(free):
-        colors.update(zip((view.id for view in same), free, strict=False))
-    return colors

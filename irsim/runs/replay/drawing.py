@@ -47,7 +47,6 @@ def page_objects(scene: SceneDescription) -> tuple[list[dict[str, Any]], list[di
                 "pose": [_rounded(value) for value in one.pose],
                 "radius": _rounded(one.radius),
                 "seen": one.solid,
-                "drive": one.drive,
                 "arrival": one.threshold,
                 "shape": shapes.setdefault(text, len(shapes)) if text else -1,
                 "kind": one.look.kind,
@@ -55,6 +54,7 @@ def page_objects(scene: SceneDescription) -> tuple[list[dict[str, Any]], list[di
                 "alpha": round(one.look.alpha, 3),
                 "goal": one.look.goal,
                 "arrow": one.look.arrow,
+                "motion": one.look.motion,
             }
         )
         lidars += [_lidar(lidar, one.row) for lidar in one.lidars]

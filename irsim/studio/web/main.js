@@ -66,7 +66,6 @@ async function run() {
 }
 
 hold(false);
-$("title").textContent = "irsim run";
 $("ahead").after(button);
 $("keys").querySelector("table").tBodies[0].append(element("tr", {}, element("td", {}, element("kbd", { textContent: "H" })),
   element("td", { textContent: "hold the simulation, which runs ahead of what is shown, or let it go on" })));

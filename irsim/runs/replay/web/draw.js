@@ -3,7 +3,7 @@
 import { inMetres, toPixels, toWorld } from "./camera.js";
 import { cellImage } from "./cells.js";
 import { GLYPHS, rgbOf, shade } from "./colors.js";
-import { crowding, drawContacts, drawGoal, drawMover, drawState, nameLift, write } from "./glyphs.js";
+import { crowding, drawContacts, drawGoal, drawMover, drawName, drawState } from "./glyphs.js";
 import { makeLayer, showLayer, showTrails } from "./layer.js";
 import { ARRIVED, flagsAt, goalAt, hasLeft, isAbsent, isMover, poseAt, rowOfTime } from "./run.js";
 import { scanAt } from "./scan.js";
@@ -273,12 +273,9 @@ function drawNames(context, run, at, picked, camera, colors, ratio) {
     context.fillText(name, x, y - 2);
   }
   for (const object of run.objects) {
-    if (!isMover(object) || isAbsent(run, object, at)) continue;
+    if (!isMover(object) || object.shape < 0 || isAbsent(run, object, at)) continue;
     if (object.role !== "robot" && object.index !== picked) continue;
-    const pose = poseAt(run, object.index, at), [x, y] = toPixels(camera, pose.x, pose.y);
-    if (x < 0 || y < 0 || x > camera.width || y > camera.height) continue;
-    const short = crowding(run) > 0 && object.index !== picked;
-    write(context, short ? object.name.replace(/^robot_(?=\d+$)/, "r") : object.name, x, y - nameLift(run, object, camera), shade(colors, object, "name"), colors);
+    drawName(context, run, object, at, object.index === picked, camera, colors);
   }
 }
 

@@ -2,10 +2,11 @@
 
 import { inMetres, toPixels } from "./camera.js";
 import { GLYPHS, shade } from "./colors.js";
-import { ARRIVED, COLLIDED, courseAt, flagsAt, isBetweenSteps, poseAt, STOPPED, waits } from "./run.js";
+import { ARRIVED, COLLIDED, courseAt, flagsAt, isAbsent, isBetweenSteps, poseAt, STOPPED, waits } from "./run.js";
 import { ofRobot } from "./words.js";
 
 const DIAGONAL = Math.SQRT1_2;
+const NAME_FONT = `bold ${GLYPHS.sizes.name}px system-ui, sans-serif`;
 
 /** 0 for few robots, 1 for some, 2 for many. */
 export const crowding = ({ robots }) => (robots.length > GLYPHS.crowd.few) + (robots.length > GLYPHS.crowd.many);
@@ -74,7 +75,7 @@ export function drawMover(context, run, object, at, camera, colors, ratio) {
     turned(context, camera, ratio, pose, courseAt(run, object.index, at, pose.heading));
     drawPerson(context, object, radius, camera, colors, pale);
   } else {
-    const course = object.drive === "omni" ? courseAt(run, object.index, at, pose.heading) : pose.heading;
+    const course = object.motion ? courseAt(run, object.index, at, pose.heading) : pose.heading;
     drawOutline(context, run, object, pose, course, radius, at, camera, colors, ratio, pale);
   }
   context.globalAlpha = 1;
@@ -141,12 +142,17 @@ function drawOutline(context, run, object, pose, course, radius, at, camera, col
   context.fill();
 }
 
+/** Middle and radius [m] of the circle around what is drawn of a body. */
+function aroundOf(run, object, at, camera) {
+  const pose = poseAt(run, object.index, at), box = boxOf(run, object), own = radiusOf(run, object, camera);
+  const c = Math.cos(pose.heading), s = Math.sin(pose.heading);
+  const rim = box.round || own > object.radius ? own : Math.hypot(box.length, box.width);
+  return { x: pose.x + c * box.x - s * box.y, y: pose.y + s * box.x + c * box.y, rim };
+}
+
 /** Rings and badges on the rim of a robot, which is picked or not. */
 export function drawState(context, run, object, at, picked, camera, colors, ratio) {
-  const pose = poseAt(run, object.index, at), state = stateOf(run, object, at), u = 1 / camera.scale;
-  const box = boxOf(run, object), own = radiusOf(run, object, camera), c = Math.cos(pose.heading), s = Math.sin(pose.heading);
-  const rim = box.round || own > object.radius ? own : Math.hypot(box.length, box.width), { rings } = GLYPHS;
-  const x = pose.x + c * box.x - s * box.y, y = pose.y + s * box.x + c * box.y;
+  const state = stateOf(run, object, at), u = 1 / camera.scale, { rings } = GLYPHS, { x, y, rim } = aroundOf(run, object, at, camera);
   inMetres(context, camera, ratio);
   const ring = ({ gap, width }, color) => {
     disc(context, x, y, rim + gap * u);
@@ -211,9 +217,9 @@ export function drawContacts(context, run, at, camera, colors, ratio) {
 }
 
 /** A bold text with a halo, in the middle of a place of the view. */
-export function write(context, text, x, y, color, colors, baseline = "bottom") {
-  context.font = `bold ${GLYPHS.sizes.name}px system-ui, sans-serif`;
-  context.textAlign = "center";
+export function write(context, text, x, y, color, colors, baseline = "bottom", align = "center") {
+  context.font = NAME_FONT;
+  context.textAlign = align;
   context.textBaseline = baseline;
   context.lineJoin = "round";
   context.lineWidth = GLYPHS.name.halo;
@@ -224,5 +230,33 @@ export function write(context, text, x, y, color, colors, baseline = "bottom") {
   context.textAlign = "left";
 }
 
-/** How far above the middle of an object its name stands [px]. */
-export const nameLift = (run, object, camera) => radiusOf(run, object, camera) * camera.scale + GLYPHS.name.gap;
+/** Half the size of an object with its rings and its badge [px]. */
+function extentOf(run, object, at, picked, camera) {
+  const rim = aroundOf(run, object, at, camera).rim * camera.scale, { rings } = GLYPHS, badged = crowding(run) < 2 && stateOf(run, object, at);
+  const ring = picked ? rings.picked : flagsAt(run, object.index, at) & COLLIDED ? rings.collided : { gap: 0, width: 0 };
+  return Math.max(rim + ring.gap + ring.width / 2, badged ? DIAGONAL * rim + GLYPHS.sizes.badge : 0);
+}
+
+/** Name an object: above it, and a picked one beside it, on the side that has more room. */
+export function drawName(context, run, object, at, picked, camera, colors) {
+  const middle = aroundOf(run, object, at, camera), [x, y] = toPixels(camera, middle.x, middle.y);
+  if (x < 0 || y < 0 || x > camera.width || y > camera.height) return;
+  const away = extentOf(run, object, at, picked, camera) + GLYPHS.name.gap, color = shade(colors, object, "name");
+  const text = crowding(run) > 0 && !picked ? object.name.replace(/^robot_(?=\d+$)/, "r") : object.name;
+  if (!picked) {
+    write(context, text, x, y - away, color, colors);
+    return;
+  }
+  context.font = NAME_FONT;
+  const length = context.measureText(text).width, half = GLYPHS.sizes.name / 2;
+  const isFree = (side) => {
+    const [from, to] = side > 0 ? [x + away, x + away + length] : [x - away - length, x - away];
+    return from >= 0 && to <= camera.width && !run.movers.some((other) => {
+      if (other === object || other.shape < 0 || isAbsent(run, other, at)) return false;
+      const own = aroundOf(run, other, at, camera), [ox, oy] = toPixels(camera, own.x, own.y), reach = own.rim * camera.scale;
+      return ox + reach > from && ox - reach < to && Math.abs(oy - y) < reach + half;
+    });
+  };
+  const side = [1, -1].find(isFree) ?? (x + away + length <= camera.width ? 1 : -1);
+  write(context, text, x + side * away, y, color, colors, "middle", side > 0 ? "left" : "right");
+}

@@ -14,7 +14,7 @@ import { eventWords, seconds } from "./words.js";
 
 const POINTS = { playing: 2500, resting: 10000 }; // of trails, painted in one frame
 const LONG = 60; // seconds: longer runs begin at a higher speed
-const DARK = matchMedia("(prefers-color-scheme: dark)");
+const DARK = matchMedia("(prefers-color-scheme: dark)"), PRINT = matchMedia("print");
 
 export const player = {
   run: null,
@@ -130,7 +130,7 @@ export const actions = {
 };
 
 export function dress() {
-  document.documentElement.dataset.theme = player.chosenTheme ?? (DARK.matches ? "dark" : "light");
+  document.documentElement.dataset.theme = PRINT.matches ? "light" : player.chosenTheme ?? (DARK.matches ? "dark" : "light");
   player.colors = themeColors();
   if (player.run) {
     drawMarks(player.run, player.colors, ratio());
@@ -190,10 +190,14 @@ export function finish(ending) {
   refresh();
 }
 
-/** Put on a theme, the user's before that of a host before that of the system, and listen to the user. */
+/** Put on a theme, the user's before that of a host before that of the system, light on paper, and listen to the user. */
 export function begin() {
   dress();
   DARK.addEventListener("change", dress);
+  PRINT.addEventListener("change", () => {
+    dress();
+    measure(); // at once, as paper waits for no frame
+  });
   listen(player, actions);
   new ResizeObserver(measure).observe($("stage"));
 }

@@ -195,12 +195,17 @@ export const isAbsent = (run, object, at) => stepAt(run, at) < (object.from ?? 0
 /** Whether an object stands at its start because its time has not come. */
 export const waits = (run, { until = 0 }, at) => stepAt(run, at) < until;
 
-/** Speed since the row before [m/s]. */
+/**
+ * Speed since the row before [m/s]; of what has arrived or was stopped until the row after, so that it is 0 if it stands.
+ * `ends` says that there is no row after: the run ends in the step in which it arrives.
+ */
 export function speedAt(run, object, at) {
-  const { track } = run.objects[object], row = Math.ceil(at);
-  if (track < 0 || row === 0) return 0;
+  const { track } = run.objects[object], flags = flagsAt(run, object, at), last = Math.floor(at) >= run.rows - 1;
+  const after = flags & (ARRIVED | STOPPED) && !last, row = after ? Math.floor(at) + 1 : Math.ceil(at);
+  if (track < 0 || row === 0 || (last && flags & STOPPED)) return { speed: 0, ends: false };
   const i = track * run.stride + row;
-  return Math.hypot(run.x[i] - run.x[i - 1], run.y[i] - run.y[i - 1]) / (run.time[row] - run.time[row - 1]);
+  const speed = Math.hypot(run.x[i] - run.x[i - 1], run.y[i] - run.y[i - 1]) / (run.time[row] - run.time[row - 1]);
+  return { speed, ends: last && Boolean(flags & ARRIVED) && !(flagsAt(run, object, at - 1) & ARRIVED) };
 }
 
 /** Direction in which something drives that need not look there; its heading when it stands. */

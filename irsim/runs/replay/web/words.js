@@ -1,6 +1,6 @@
 // What the page says about objects and events.
 
-import { ARRIVED, COLLIDED, flagsAt, goalAt, hasLeft, isAbsent, poseAt, speedAt, STOPPED, waits } from "./run.js";
+import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, hasLeft, isAbsent, poseAt, speedAt, STOPPED, waits } from "./run.js";
 
 const KINDS = {
   collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way",
@@ -18,6 +18,8 @@ export const manyWords = (kind) => MANY_OF[kind] ?? kind;
 
 export const metres = (value) => `${value.toFixed(2)} m`;
 export const seconds = (value) => `${value.toFixed(Math.abs(value) < 1000 ? 2 : 1)} s`;
+
+const degrees = (angle) => `${Math.round((angle * 180) / Math.PI)}°`;
 
 /** A name in a sentence; a person without a name of their own has the number of an obstacle. */
 const called = ({ kind, name }) => (kind === "person" && /^obstacle_\d+$/.test(name) ? `the person ${name}` : name);
@@ -41,9 +43,16 @@ export function valuesOf(run, index, at) {
   const turn = Math.atan2(Math.sin(pose.heading), Math.cos(pose.heading));
   const pairs = [
     ["position", `${pose.x.toFixed(2)}, ${pose.y.toFixed(2)} m`],
-    ["heading", `${turn.toFixed(2)} rad (${Math.round((turn * 180) / Math.PI)}°)`],
+    ["heading", `${turn.toFixed(2)} rad (${degrees(turn)})`],
   ];
-  if (object.track >= 0 || object.role === "robot") pairs.push(["speed", `${speedAt(run, index, at).toFixed(2)} m/s`]);
+  if (object.motion && (object.role === "robot" || object.arrow)) {
+    const course = courseAt(run, index, at, NaN);
+    pairs.push(["dart", Number.isNaN(course) ? "heading, as it stands" : `along its motion, ${degrees(course)}`]);
+  }
+  if (object.track >= 0 || object.role === "robot") {
+    const { speed, ends } = speedAt(run, index, at);
+    pairs.push(["speed", `${speed.toFixed(2)} m/s${ends ? " on arrival" : ""}`]);
+  }
   if (goal) pairs.push(["to goal", metres(Math.hypot(goal.x - pose.x, goal.y - pose.y))]);
   const flags = flagsAt(run, index, at);
   const state = [[COLLIDED, "in collision"], [ARRIVED, "arrived"], [STOPPED, "stopped"]];
