@@ -496,6 +496,38 @@ class FmcwLidar2dOptions(_Options):
         realism: LidarErrors | None,
     ) -> None: ...
 
+class SonarOptions(_Options):
+    def __init__(
+        self,
+        *,
+        offset: Sequence[float],
+        range_min: float,
+        range_max: float,
+        cone: float,
+        incidence_max: float,
+        std: float,
+        std_per_meter: float,
+        resolution: float,
+        dropout: float,
+        crosstalk: float,
+    ) -> None: ...
+
+class IrRangeOptions(_Options):
+    def __init__(
+        self,
+        *,
+        offset: Sequence[float],
+        range_min: float,
+        range_max: float,
+        cone: float,
+        incidence_max: float,
+        std: float,
+        std_per_meter: float,
+        resolution: float,
+        dropout: float,
+        folds: bool,
+    ) -> None: ...
+
 class OdometryOptions(_Options):
     def __init__(
         self,

@@ -3,7 +3,8 @@
 //   void                 NAME(options, sensing)  one scan into sensing.ranges, hits, valid (and velocities)
 //   std::vector<double>  beams(options)          nominal beam angles, sensor frame
 //   int                  velocity_rows(options)  numbers per beam in sensing.velocities; optional, 0 by default
-//   int                  readings(options)       numbers in sensing.readings, of sensors without beams; optional, 0
+//   int                  readings(options)       numbers in sensing.readings, of sensors that report them instead of
+//                                                beams; optional, 0
 //   int                  memory(options)         numbers in sensing.memory, which last from step to step; optional, 0
 #pragma once
 

@@ -281,7 +281,7 @@ GUIDES: dict[str, Guide] = {
         "an object that slides back and forth is an obstacle with kinematics omni and behavior {name: dash, loop: "
         "true}. No weather, slippery floors, speed zones, traffic "
         "lights, right of way, priorities, batteries, radio, cameras or arms; "
-        "sensors are planar lidars, odometry, imu, gnss and localization. gravity, "
+        "sensors are planar lidars, sonars, infrared range sensors, odometry, imu, gnss and localization. gravity, "
         "friction and mass only affect pushing (collision_mode contact). Say what is not possible, and offer the "
         "closest alternative, labelled as such. (Speed limits are vel_min, vel_max and acce.)",
         None,

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from irsim.bundled import templates
-from irsim.components.sensors._devices import DEVICES
+from irsim.components.sensors._devices import DEVICES, INFRARED, SONARS, Device
 from irsim.components.sensors._realism import LidarRealism
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key, key_list, key_table, plain_table
@@ -122,6 +122,7 @@ def _sensors(source: _Source) -> str:
         "`sensors: [{name: …}, …]`, a list. Lidars see all robots and obstacles that are not `unobstructed`.\n\n"
         + _components(source, "sensor")
         + "\n\nErrors of lidars beyond Gaussian noise, and lidars that one can buy, are in [lidars.md](lidars.md).\n\n"
+        + f"## Other range sensors that one can buy: `device`\n\n{_devices({**SONARS, **INFRARED})}\n\n"
         + COLOR
     )
 
@@ -130,18 +131,19 @@ def _lidars(source: _Source) -> str:
     return (
         f"## Errors: `realism`\n\n{' '.join((LidarRealism.__doc__ or '').split())}\n\n"
         + _keys(source, "robot.sensors.lidar2d.realism")
-        + f"\n\n## Lidars that one can buy: `device`\n\n{_devices()}"
+        + f"\n\n## Lidars that one can buy: `device`\n\n{_devices(DEVICES)}"
     )
 
 
-def _devices() -> str:
-    sources = list(dict.fromkeys(source for card in DEVICES.values() for source in card.sources.values()))
+def _devices(cards: Mapping[str, Device]) -> str:
+    """The cards of devices as a table, and their sources."""
+    sources = list(dict.fromkeys(source for card in cards.values() for source in card.sources.values()))
     unread = sum(source.read is None for source in sources)
     number = {source: index for index, source in enumerate(sources, 1)}
     rows = [
         [f"`{name}`", card.title, ", ".join(f"`{key}: {value}` [{number[card.sources[key]]}]".replace("True", "true")
          .replace("False", "false") for key, value in card.keys.items())]
-        for name, card in DEVICES.items()
+        for name, card in cards.items()
     ]  # fmt: skip
     told = "\n".join(
         f"{number[source]}. {source.text}" + (f" (read {source.read})" if source.read else " (**unverified**)")

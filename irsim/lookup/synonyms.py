@@ -17,6 +17,10 @@ EVERYDAY: dict[str, str] = {
     "bridges.carla": "town, autonomous driving simulator, unreal",
     "robot.behavior.replay": "replay, recorded pedestrians, recorded trajectory, trajectory file, csv, eth ucy, "
     "data set of people",
+    "robot.sensors.sonar": "sonar, ultrasonic, ultrasound, ultrasonic sensor, hc-sr04, hcsr04, echo, parking sensor, "
+    "ultraschall, ultrasonido, 超声波",
+    "robot.sensors.ir_range": "infrared, ir sensor, infrared sensor, time of flight, tof, gp2y0a21, vl53l0x, "
+    "infrarot, infrarrojo, 红外",
     "robot.sensors.odometry": "odometry, odometer, wheel encoder, encoder, wheel odometry, dead reckoning, odom, "
     "drift, odometrie, odometría, 里程计",
     "robot.sensors.imu": "imu, accelerometer, gyroscope, gyro, inertial sensor, inertial measurement unit, "
@@ -26,7 +30,7 @@ EVERYDAY: dict[str, str] = {
     "map frame, 定位",
     "robot.sensors.lidar2d": "lidar, lidar sensor, laser, laser scanner, scanner, lidar scanner, "
     "range finder, rangefinder, ladar, "
-    "720, 720 beams, 1080 beams, 360 beams, distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range"
+    "720, 720 beams, 1080 beams, 360 beams, distance sensor, proximity sensor, beam, sensor range"
     ", laserscanner, abstandssensor, láser, escáner láser, 激光雷达, 激光",
     "robot.sensors.fmcw_lidar2d": "lidar, fmcw, fmcw lidar, doppler, radar, velocity lidar, radial velocity",
     "robot.sensors.contact2d": "bumper, touch sensor, contact sensor, tactile",

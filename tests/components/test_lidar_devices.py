@@ -1,11 +1,20 @@
-"""Lidars that one can buy: every card is valid, has sources, and gives way to keys of the scenario."""
+"""Range sensors that one can buy: every card is valid, has sources, and gives way to keys of the scenario."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
-from irsim.components.sensors._devices import DEVICES
+from irsim.components.sensors._devices import DEVICES, INFRARED, SONARS
+from irsim.components.sensors.ir_range import IrRange
 from irsim.components.sensors.lidar2d import Lidar2d
+from irsim.components.sensors.sonar import Sonar
+
+OTHERS = [
+    *((Sonar, "sonar", card) for card in SONARS.items()),
+    *((IrRange, "ir_range", card) for card in INFRARED.items()),
+]
 
 
 def test_there_are_cards_enough() -> None:
@@ -22,6 +31,15 @@ def test_every_number_of_a_card_has_a_source_and_a_place(name: str) -> None:
     for key, value in card.keys.items():
         of, _, nested = key.rpartition(".")
         assert getattr(lidar.realism if of else lidar, nested) == value
+
+
+@pytest.mark.parametrize(("model", "sensor", "entry"), OTHERS, ids=[name for *_, (name, _) in OTHERS])
+def test_cards_of_other_sensors_have_sources_and_places(model: Any, sensor: str, entry: Any) -> None:
+    name, card = entry
+    assert set(card.sources) == set(card.keys)
+    made = model.model_validate({"name": sensor, "device": name})
+    assert {key: getattr(made, key) for key in card.keys} == card.keys
+    assert model.model_validate({"name": sensor, "device": name, "range_max": 0.6}).range_max == 0.6
 
 
 def test_unverified_numbers_are_those_whose_source_nobody_opened() -> None:

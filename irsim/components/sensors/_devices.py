@@ -1,4 +1,4 @@
-"""Lidars that one can buy: the values of the key ``device``.
+"""Range sensors that one can buy: the values of the key ``device`` of lidars and of sensors of one cone.
 
 Each number has a source. A number that was not compared with its source yet is unverified: it is common knowledge, and
 the data sheet was not opened. A tolerance of the maker (plus or minus) is taken for two standard deviations.
@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-__all__ = ["DEVICES", "Device", "DeviceName", "Source"]
+__all__ = ["DEVICES", "INFRARED", "SONARS", "Device", "DeviceName", "Source", "with_card"]
 
 DeviceName = Literal[
     "rplidar_a1", "rplidar_a2", "rplidar_s2", "ust_10lx", "urg_04lx", "tim561", "lms1xx", "lms5xx", "lds_01", "lds_02",
@@ -34,11 +34,11 @@ class Source:
 
 @dataclass(frozen=True)
 class Device:
-    """A lidar: keys of a scenario, and the source of each.
+    """A sensor: keys of a scenario, and the source of each.
 
     Attributes:
         title: Maker and type.
-        keys: Keys of the lidar; a key of ``realism`` is written ``realism.KEY``.
+        keys: Keys of the sensor; a key of ``realism`` is written ``realism.KEY``.
         sources: Key -> source of its number.
     """
 
@@ -55,7 +55,19 @@ class Device:
         """The keys as a mapping of a scenario, with ``realism`` as a mapping of its own."""
         plain = {key: value for key, value in self.keys.items() if not key.startswith("realism.")}
         nested = {key.partition(".")[2]: value for key, value in self.keys.items() if key.startswith("realism.")}
-        return {**plain, "realism": nested}
+        return {**plain, "realism": nested} if nested else plain
+
+
+def with_card(given: Any, cards: Mapping[str, Device]) -> Any:
+    """Return the keys of a sensor with those of the card that its ``device`` names; keys beside it win."""
+    name = given.get("device") if isinstance(given, Mapping) else None
+    if not isinstance(name, str) or name not in cards:
+        return given
+    card = cards[name].options()
+    realism = given.get("realism", {})
+    if "realism" in card and isinstance(realism, Mapping):
+        return {**card, **given, "realism": {**card["realism"], **realism}}
+    return {**card, **given}
 
 
 def _device(title: str, *parts: tuple[Source, dict[str, Any]]) -> Device:
@@ -189,4 +201,34 @@ DEVICES: Mapping[str, Device] = {
         ),
     ),
 }  # fmt: skip
-"""Name of a device -> its card."""
+"""Name of a lidar -> its card."""
+
+SONARS: Mapping[str, Device] = {
+    "hc_sr04": _device(
+        "HC-SR04",
+        (
+            Source("Data sheet of HC-SR04: 0.02 to 4 m, measuring angle of 15 degrees, accuracy of 3 mm"),
+            {"range_min": 0.02, "range_max": 4.0, "cone": 0.2618, "std": 0.0015},
+        ),
+        (Source("Common experience with HC-SR04: no echo beyond 25 to 30 degrees"), {"incidence_max": 0.48}),
+    ),
+}
+"""Name of a sonar -> its card."""
+
+INFRARED: Mapping[str, Device] = {
+    "gp2y0a21": _device(
+        "Sharp GP2Y0A21YK0F",
+        (
+            Source("Sharp data sheet of GP2Y0A21YK0F: 0.1 to 0.8 m; its voltage falls again below that"),
+            {"range_min": 0.1, "range_max": 0.8, "folds": True},
+        ),
+    ),
+    "vl53l0x": _device(
+        "ST VL53L0X",
+        (
+            Source("ST data sheet of VL53L0X: up to 2 m, field of view of 25 degrees"),
+            {"range_min": 0.0, "range_max": 2.0, "cone": 0.4363, "folds": False},
+        ),
+    ),
+}
+"""Name of an infrared range sensor -> its card."""

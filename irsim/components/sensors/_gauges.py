@@ -20,8 +20,12 @@ class GaugeOptions(SensorOptions):
     """A sensor that reports a few numbers in each step; programs read them by name."""
 
     reports: ClassVar[tuple[str, ...]] = ()
-    """Names of its numbers, in their order."""
+    """Names of its numbers, in their order; empty if they follow from the options."""
     report_units: ClassVar[tuple[str, ...]] = ()
+
+    def numbers(self) -> tuple[tuple[str, str], ...]:
+        """Name and unit of each of its numbers, in their order."""
+        return tuple(zip(self.reports, self.report_units, strict=True))
 
     def resolved(self, zones: list[str]) -> dict[str, Any]:
         """Fields of the kernel that are not keys, or not as they are written.

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 import irsim._core as core
 from irsim.components.options import SensorOptions
-from irsim.components.sensors._devices import DEVICES, DeviceName
+from irsim.components.sensors._devices import DEVICES, DeviceName, with_card
 from irsim.components.sensors._realism import LidarRealism
 from irsim.options.base import Options
 from irsim.options.colors import Color
@@ -100,14 +99,7 @@ class Lidar2d(SensorOptions):
     @model_validator(mode="before")
     @classmethod
     def _take_device(cls, given: Any) -> Any:
-        name = given.get("device") if isinstance(given, Mapping) else None
-        if not isinstance(name, str) or name not in DEVICES:
-            return given
-        card = DEVICES[name].options()
-        realism = given.get("realism", {})
-        if isinstance(realism, Mapping):
-            realism = {**card["realism"], **realism}
-        return {**card, **given, "realism": realism}
+        return with_card(given, DEVICES)
 
     @property
     def drawn_alpha(self) -> float:

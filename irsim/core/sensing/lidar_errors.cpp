@@ -156,6 +156,17 @@ double rounded(const LidarErrors& errors, double range) {
 
 }  // namespace
 
+void follow_light(const Sensing& s, const Fan& fan, Surface& surface) {
+  BeamBuffers& beams = s.buffers;
+  beams.cosine.assign(fan.count(), 1.0);
+  for (int i = 0; i < fan.count(); ++i) {
+    if (fan.hit(i) >= 0) beams.cosine[i] = surface.cosine(fan, i);
+  }
+  if (!s.world.optics) return;
+  pass_glass(s, fan, surface);
+  follow_mirrors(s, fan, surface);
+}
+
 void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, const Sensing& s, const Fan& fan,
                        std::uint64_t first_draw) {
   const int n = s.mount.count;
@@ -164,16 +175,7 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
   const bool looks = steep || dim || s.world.optics;
   beams.power.assign(n, 1.0);
   Surface surface(s);
-  if (looks) {
-    beams.cosine.assign(n, 1.0);
-    for (int i = 0; i < n; ++i) {
-      if (fan.hit(i) >= 0) beams.cosine[i] = surface.cosine(fan, i);
-    }
-    if (s.world.optics) {
-      pass_glass(s, fan, surface);
-      follow_mirrors(s, fan, surface);
-    }
-  }
+  if (looks) follow_light(s, fan, surface);
   if (s.earlier) follow_motion(s, fan, surface);
   if (errors.divergence > 0.0 && errors.rays > 1) widen_beams(errors, s, fan);
 

@@ -52,6 +52,11 @@ struct RangeLimits {
   double std;                // of its ranges, 0 without noise [m]
 };
 
+class Surface;
+
+/// Let the light of a cast fan go its way: write the cosines of incidence, replace what is behind glass and in mirrors.
+void follow_light(const Sensing& sensing, const Fan& fan, Surface& surface);
+
 /// Write ranges, hits and valid of a scan with its errors.
 ///
 /// Args:

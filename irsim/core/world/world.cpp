@@ -125,13 +125,13 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
       mount.velocity_rows = velocity_rows(options), mount.offset = mounted_at(options);
       mount.readings = readings(options), mount.memory = memory(options);
     });
-    world.beams_per_world += mount.count;
-    world.velocities_per_world += mount.count * mount.velocity_rows;
     world.readings_per_world += mount.readings, world.memory_per_world += mount.memory;
-    if (mount.readings > 0) {
+    if (mount.readings > 0) {  // its rays are not reported, so they have no place among the beams of the world
       world.gauges.push_back({spec.sensors[k], mount, {}});
       continue;
     }
+    world.beams_per_world += mount.count;
+    world.velocities_per_world += mount.count * mount.velocity_rows;
     int parts = 1;
     with(spec.sensors[k], [&](const auto& options) { parts = std::min(sweep_parts(options), mount.count); });
     world.scans.push_back({spec.sensors[k], mount, parts > 1 ? split(mount, parts) : std::vector<Mount>()});

@@ -39,7 +39,7 @@ struct Mount {
   int index;  // index among the sensors of the object
   int first, count;
   int first_velocity, velocity_rows;  // slice of the velocities of a world: rows of `count` numbers
-  int first_reading, readings;        // slice of the readings of a world, of sensors without beams
+  int first_reading, readings;        // slice of the readings of a world, of sensors that report them instead
   int first_memory, memory;           // slice of what the sensors of a world remember
   std::array<double, 3> offset;       // pose in the body frame [m, m, rad]
   std::vector<double> angle, cosine, sine;

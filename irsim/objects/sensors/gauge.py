@@ -1,4 +1,4 @@
-"""Sensors that report numbers instead of ranges, as scripts use them: odometry, imu, gnss, localization."""
+"""Sensors that report a few numbers, as scripts use them: odometry, imu, sonar and others."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class Gauge:
     def __init__(self, simulation: Simulation, parent: SimObject, options: Any, index: int) -> None:
         self.parent, self.obj_id, self.options = parent, parent.id, options
         self.sensor_type = str(options.name)
-        self.names: tuple[str, ...] = options.reports
-        self.units: tuple[str, ...] = options.report_units
+        numbers: tuple[tuple[str, str], ...] = options.numbers()
+        self.names, self.units = tuple(name for name, _ in numbers), tuple(unit for _, unit in numbers)
         self.attach(simulation, index)
 
     def attach(self, simulation: Simulation, index: int) -> None:

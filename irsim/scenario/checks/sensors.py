@@ -54,7 +54,7 @@ def check(context: Context) -> Iterator[Finding]:
 
 
 def _sensor(context: Context, path: Any, sensor: Any) -> Iterator[Finding]:
-    if getattr(sensor, "is_lidar", False) and sensor.range_min >= sensor.range_max:
+    if getattr(sensor, "range_min", -math.inf) >= getattr(sensor, "range_max", math.inf):
         written = "range_min" if "range_min" in sensor.model_fields_set else "range_max"
         yield error(
             "range-order",
