@@ -60,6 +60,13 @@ def test_the_policy_of_the_page_lists_the_hashes_of_what_it_holds() -> None:
         assert re.findall(rf"{kind}-src 'sha256-(.*?)'", text) == known
 
 
+@pytest.mark.parametrize("title", ["irsim run", "irsim replay"])
+def test_a_page_has_one_title_until_its_run_is_there(title: str) -> None:
+    text = page(title=title)
+    assert f"<title>{title}</title>" in text
+    assert f'<h1 id="title">{title}</h1>' in text
+
+
 def test_the_empty_page() -> None:
     text = page()
     assert data_in(text) == b""

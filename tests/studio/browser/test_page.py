@@ -44,7 +44,7 @@ def test_it_plays_at_once_and_stays_with_the_last_state(start: Start) -> None:
     until(page, f"document.getElementById('time').value == {result.steps}")
     assert page.get_attribute("#play", "aria-label") == "Play"
     assert page.inner_text("#outcome") == "collision"
-    assert page.inner_text("#facts").endswith("3 robots · seed 1")
+    assert page.inner_text("#facts") == f"{result.reason or result.summary} · 3 robots · seed 1", "as the terminal says"
     assert page.locator("#hold").is_hidden()
     x, y, _ = result.robots[0].pose
     page.select_option("#robot", label="rover")
