@@ -69,7 +69,7 @@ __all__ = [
 ]
 
 
-_get, _list = lazy_names(__name__, PUBLIC_HOMES, _PACKAGES)
+_get, _list = lazy_names(__name__, PUBLIC_HOMES, {*_PACKAGES, "learning"})
 
 
 def __getattr__(name: str) -> Any:

@@ -91,6 +91,12 @@ def benchmark(
     csv_output: Annotated[
         bool, typer.Option("--csv", help="Print all metrics of every episode as comma-separated values.")
     ] = False,
+    verbose: Annotated[
+        bool,
+        typer.Option(
+            "-v", "--verbose", help="Also print all details of a suite: policies, roles, failed rows, perturbed starts."
+        ),
+    ] = False,
     strict: Strict = False,
     imports: Imports = None,
     workers: Annotated[
@@ -177,16 +183,18 @@ def benchmark(
     elif csv_output:
         _print_csv(result)
     else:
-        show_benchmark(result, console())
+        show_benchmark(result, console(), verbose=verbose)
 
 
-def show_benchmark(result: BenchmarkResult, out: Console) -> None:
+def show_benchmark(result: BenchmarkResult, out: Console, *, verbose: bool = True) -> None:
     """Print the table of a benchmark.
 
     Args:
         result: Result of :func:`irsim.benchmark`.
         out: Console to print to.
+        verbose: Also print all details of a suite, which its report has, too.
     """
+    brief = hasattr(result, "facts") and not verbose
     if not out.is_terminal:
         out.width = max(out.width, _FULL_WIDTH)
     width = out.width
@@ -223,10 +231,10 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     out.print(table)
     if any(row.success.rate < 1 and row.metrics["time_to_goal"].n for row in result.rows):
         out.print("success: every robot arrived without a collision; time: of the robots that arrived, in any episode")
-    for text, label in behaviors.items():
+    for text, label in () if brief else behaviors.items():
         if label != text:
             out.print(f"{label}: {clean(text, 400)}", soft_wrap=True)
-    for row in result.rows:
+    for row in () if brief else result.rows:
         if watched := _watched_line(row):
             combination = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
             out.print(f"watched: {combination}: {watched}")
@@ -252,8 +260,20 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     for name in [name for name in summaries if name in ranks]:
         shown = [f"{behaviors[one.behavior]} {rank_text(one)}" for one in ranks[name]]
         out.print(f"{name}: {RANKS[:1].lower()}{RANKS[1:]}: {', '.join(shown)}")
-    suite = hasattr(result, "facts")
+    if brief:
+        failed = sum(bool(row.failed) for row in result.rows)
+        rows = f"{failed} of {len(result.rows)} rows have failed episodes; " if failed else ""
+        out.print(f"{rows}-v prints {'them, ' if failed else ''}policies and perturbed starts, the report has all")
+    else:
+        _show_details(result, out)
+    out.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)
+
+
+def _show_details(result: BenchmarkResult, out: Console) -> None:
+    """Print which seeds failed, and what holds for all rows."""
+    labels, behaviors = _labels(result.scenarios), _policies(result) or labels_of(result.behaviors)
     failed = [row for row in result.rows if row.failed]
+    suite = hasattr(result, "facts")
     for row in failed[: MAX_FAILED_LINES if suite else None]:
         failures = list(row.failures.items())[:MAX_FAILURES]
         robots = [clean(what) + (f" {n} of {row.episodes}" if row.episodes > 1 else "") for what, n in failures]
@@ -268,7 +288,6 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
         out.print(Text.assemble(("note: ", "bold"), clean(note, 400)))
     periods = sorted(set(result.step_time.values()))
     out.print(f"metrics are sampled in every step ({', '.join(f'{period:g} s' for period in periods)})")
-    out.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)
 
 
 def _policies(result: BenchmarkResult) -> dict[str, str]:

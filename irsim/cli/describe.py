@@ -31,6 +31,9 @@ def describe(
             show_default=False,
         ),
     ] = None,
+    verbose: Annotated[
+        bool, typer.Option("-v", "--verbose", help="Also print all details of a suite: policies with options, sources.")
+    ] = False,
     json_output: Json = False,
 ) -> None:
     """Explain a key, a component, a template, a metric or an error code. Without a topic, list all topics."""
@@ -42,6 +45,8 @@ def describe(
     answer = lookup(asked)
     if json_output:
         print_json(answer)
+    elif answer.kind == "suite" and answer.groups and not verbose:
+        _show_suite(answer, console())
     else:
         _show(answer, console())
 
@@ -58,6 +63,20 @@ def _show_several(answers: list[Answer | TopicError], json_output: bool) -> None
     for place, answer in enumerate(known):
         title, _, rest = as_brief_text(answer).partition("\n")
         console().print(*([""] if place else []), Text(title, style="bold"), Text(rest), sep="\n")
+
+
+def _show_suite(answer: Answer, out: Console) -> None:
+    """Print what decides whether a suite is the right one, and the command that runs it."""
+    title, _, text = as_brief_text(answer.model_copy(update={"groups": {}, "example": None})).partition("\n")
+    out.print(Text(title, style="bold"), Text(text), sep="\n")
+    for heading, keys in answer.groups.items():
+        if heading == "fixed":
+            out.print("; ".join(f"{key.name}: {key.text}" for key in keys))
+        elif heading != "sources":
+            out.print(f"{heading}: {', '.join(key.name for key in keys)}")
+    if answer.example:
+        out.print(Text.assemble("run it: ", (answer.example, "cyan")), soft_wrap=True)
+    out.print(f"all of it: irsim describe {answer.topic} -v", soft_wrap=True)
 
 
 def _show(answer: Answer, out: Console) -> None:

@@ -31,8 +31,8 @@ __all__ = [
     "tolerated_note",
 ]
 
-_DIFFERENCES = {"unknown-behavior": "D5", "behavior-for-other-drive": "D5"}
-"""Code of a problem that IR-SIM 2.12 tolerates -> the difference that says what irsim does; D4 of all others."""
+_MEND_LATER = ("unknown-behavior", "behavior-for-other-drive")
+"""Codes of what a run tolerates only if a program has mended it before the first step (difference D5)."""
 
 
 class UserImportError(CodedError, ImportError):
@@ -98,12 +98,9 @@ def print_warnings(findings: Sequence[Finding], file: str) -> None:
 
 
 def tolerated_note(findings: Sequence[Finding]) -> str:
-    """The start of the sentence on what IR-SIM 2.12 tolerates, with the differences to look up; empty without any."""
-    tolerated = [one for one in findings if one.tolerated]
-    if not tolerated:
-        return ""
-    ids = sorted({_DIFFERENCES.get(one.code, "D4") for one in tolerated})
-    return f"{plural(len(tolerated), 'problem')} that IR-SIM 2.12 tolerates (irsim describe {','.join(ids)})"
+    """The start of the sentence on what IR-SIM 2.12 tolerates, with the difference to look up; empty without any."""
+    count = sum(one.tolerated and one.code not in _MEND_LATER for one in findings)
+    return f"{plural(count, 'problem')} that IR-SIM 2.12 tolerates (irsim describe D4)" if count else ""
 
 
 def import_user_modules(names: Sequence[str] | None) -> None:

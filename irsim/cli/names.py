@@ -36,7 +36,7 @@ REFUSED: dict[str, dict[str, str]] = {
 }
 """Command -> a name of an option that it does not have, or that means something else in others -> what to write."""
 PANELS: dict[str, str] = {
-    "Simulation": "--seed --seeds --steps --until --perturb --policy --policies --bridge --protocol --scenario "
+    "Simulation": "--seed --seeds --step --steps --until --perturb --policy --policies --bridge --protocol --scenario "
     "--full --strict --import --max-objects",
     "Files": "--out --force --save-gif --record --record-to --export --submission --ros-map",
     "Watching": "--watch --show --speed --port --no-browser",

@@ -39,6 +39,23 @@ PUBLIC_HOMES = {
     "validate": "irsim.api",
 }
 """Name -> the module that it is imported from when it is first used."""
+_ELSEWHERE = {
+    "ParallelEnv": "irsim.learning.ParallelEnv",
+    "SB3VecEnv": "irsim.learning.SB3VecEnv",
+    "Task": "irsim.learning.Task",
+    "TorchRLEnv": "irsim.learning.TorchRLEnv",
+    "VectorEnv": "irsim.learning.VectorEnv",
+    "export": "irsim.export_run",
+    "load": "irsim.make",
+    "load_policy": "irsim.open_policy",
+    "make_env": "irsim.make",
+    "make_vec": "irsim.learning.VectorEnv",
+    "make_vec_env": "irsim.learning.VectorEnv",
+    "simulate": "irsim.run",
+    "train": "the command irsim train",
+    "vector": "irsim.learning.VectorEnv",
+}
+"""Name that other libraries or packages of irsim have, but not ``irsim`` -> what to use."""
 
 
 @cache
@@ -68,7 +85,8 @@ def lazy_names(
         elif name in own_modules:
             value = import_module(f"{package}.{name}")
         else:
-            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+            hint = f": use {meant}" if package == "irsim" and (meant := _ELSEWHERE.get(name)) else ""
+            raise AttributeError(f"module {package!r} has no attribute {name!r}{hint}")
         setattr(sys.modules[package], name, value)
         return value
 

@@ -250,10 +250,13 @@ def suite_answer(name: str) -> Answer:
         topic=name,
         kind="suite",
         title=f"suite {name}: {suite.title}",
-        text=f"{suite.about} Seeds {plan.seeds[0]} to {plan.seeds[-1]}{full}, {_horizon(suite)}; protocols: "
-        f"{', '.join(suite.protocols)}. One scenario is named {name}/{plan.scenarios[0].name}, for irsim run and for "
-        "the tools.",
+        text=f"{suite.about} One scenario is named {name}/{plan.scenarios[0].name}, for irsim run and for the tools.",
         groups={
+            "fixed": [
+                Key(name="seeds", text=f"{plan.seeds[0]} to {plan.seeds[-1]}{full}"),
+                Key(name="time", text=_horizon(suite)),
+                Key(name="protocols", text=", ".join(suite.protocols)),
+            ],
             "scenarios": [Key(name=one.name) for one in plan.scenarios if one.protocol == suite.protocols[0]],
             "policies": [Key(name=label, text=text) for label, text in plan.policies.items()],
             "policies that run only where --policies names them": [

@@ -51,13 +51,22 @@ def locate(name: str | os.PathLike[str] | None = None) -> str:
     for candidate in candidates:
         if os.path.exists(candidate):  # a directory or device: reading it reports what it is
             return candidate
-    searched = _unique(os.path.dirname(os.path.abspath(candidate)) for candidate in candidates)
+    given, *others = _unique(os.path.dirname(os.path.abspath(candidate)) for candidate in candidates)
+    searched = [given, *filter(_is_of_user, others)]
     raise ScenarioNotFoundError(_message(wanted, searched))
 
 
 def _places() -> list[str]:
     script = os.path.dirname(os.path.abspath(sys.argv[0])) if sys.argv and sys.argv[0] else None
     return _unique(place for place in (sys.path[0] if sys.path else None, os.getcwd(), script) if place is not None)
+
+
+def _is_of_user(folder: str) -> bool:
+    """Whether a folder is one that a message names: neither hidden nor of a Python environment, as ``.venv/bin`` is."""
+    path, here = Path(folder), Path.cwd()
+    parts = path.relative_to(here).parts if path.is_relative_to(here) else path.parts
+    above = [one for one in (path, *path.parents) if not here.is_relative_to(one)]
+    return not any(part.startswith(".") for part in parts) and not any((one / "pyvenv.cfg").is_file() for one in above)
 
 
 def _unique(items: Iterable[str]) -> list[str]:

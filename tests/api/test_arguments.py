@@ -153,3 +153,13 @@ def test_imports_are_a_list() -> None:
 def test_a_misspelt_argument_is_answered_with_the_nearest_name(function: str, wrong: str, right: str) -> None:
     with pytest.raises(TypeError, match=rf"^{function}\(\) got .*'{wrong}'\. Did you mean '{right}'\?$"):
         getattr(irsim, function)("scene.yaml", **{wrong: 1})
+
+
+@pytest.mark.parametrize("wrong", ["make_vec", "VectorEnv", "load", "export"])
+def test_a_name_of_other_libraries_is_answered_with_the_one_to_use(wrong: str) -> None:
+    with pytest.raises(AttributeError, match=rf"module 'irsim' has no attribute '{wrong}': use irsim\.\S+$") as caught:
+        getattr(irsim, wrong)
+    value: object = irsim
+    for name in str(caught.value).rpartition("irsim.")[2].split("."):
+        value = getattr(value, name)
+    assert callable(value)

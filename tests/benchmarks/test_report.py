@@ -61,11 +61,11 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, SuiteResult]:
     return place / "run", SuiteResult.model_validate_json((place / "run" / RESULTS).read_bytes())
 
 
-def shown(result: SuiteResult) -> str:
+def shown(result: SuiteResult, *, verbose: bool = True) -> str:
     """The table as it is printed into a file."""
     out = Console(width=140, force_terminal=False, markup=False, highlight=False)
     with out.capture() as capture:
-        show_benchmark(result, out)
+        show_benchmark(result, out, verbose=verbose)
     return capture.get()
 
 
@@ -98,6 +98,15 @@ def test_a_suite_prints_few_lines_of_failures(made: tuple[Path, SuiteResult]) ->
     count = sum(bool(row.failed) for row in made[1].rows)
     assert (count > 5, len(lines)) == (True, 6)
     assert f"failed: {count - 5} more rows; rates are in results.md, seeds in results.json" == lines[-1]
+
+
+def test_a_suite_ends_with_what_decides_unless_all_details_are_asked_for(made: tuple[Path, SuiteResult]) -> None:
+    brief, whole = shown(made[1], verbose=False).splitlines(), shown(made[1]).splitlines()
+    count = sum(bool(row.failed) for row in made[1].rows)
+    assert not any(line.startswith(("failed:", "note:", "metrics are")) for line in brief)
+    assert any(line.startswith(f"{count} of {len(made[1].rows)} rows have failed episodes; -v") for line in brief)
+    assert brief[-1] == whole[-1] == f"reproduce: {made[1].reproduce}"
+    assert len([line for line in brief if line not in whole]) == 1
 
 
 def test_csv_of_a_suite_names_policy_family_protocol_and_values(made: tuple[Path, SuiteResult]) -> None:

@@ -88,6 +88,18 @@ def test_templates_show_their_parameters(irsim: Run) -> None:
     assert "irsim new corridor-passing --set width=1.6" in shown
 
 
+def test_a_suite_is_told_briefly_unless_all_of_it_is_asked_for(irsim: Run) -> None:
+    brief, whole = irsim("describe", "social_v2").stdout, irsim("describe", "social_v2", "-v").stdout
+    assert len(brief.splitlines()) <= 10
+    assert "seeds: 100000 to 100049 (200 with --full); time: at most 100 s; protocols: freeze, yield" in brief
+    assert "policies: as-written, orca, sfm, dash" in brief
+    assert "irsim benchmark social_v2 --seeds 5" in brief
+    assert "irsim describe social_v2 -v" in brief
+    for detail in ("timeHorizonObst", "Francis et al.", "100000 to 100049"):
+        assert detail in whole
+    assert "timeHorizonObst" not in brief
+
+
 def test_metrics_are_explained(irsim: Run) -> None:
     shown = irsim("describe", "aggregated_time").stdout
     assert shown.startswith("metric aggregated_time")

@@ -51,7 +51,9 @@ MEANINGS = {
     "--step": "picture (of this step|shows the state after N steps)",
     "--steps": "^Maximum number of steps",
     "--strict": "Treat tolerated problems",
+    "--verbose": "^Also print",
     "--workers": "[Pp]rocesses",
+    "-v": "^Also print",
     "-o": "[Ff]ile|to write|Folder (of|for)|Picture",
 }
 """An option of several commands -> what its help says in each of them; a new option of that name means the same."""

@@ -217,3 +217,16 @@ def test_places_of_a_missing_file_are_a_list(irsim: Run, room: Path) -> None:
     assert "  no scenario file 'rom.yaml'. Searched:" in lines
     assert f"    {room.parent}" in lines
     assert "  Did you mean 'room.yaml'?" in lines
+
+
+def test_what_only_a_run_tolerates_names_the_difference(irsim: Run, room: Path) -> None:
+    text = room.read_text(encoding="utf-8")
+    room.write_text(text.replace("{name: dash}", "{name: dash, vmaxx: 3}"), encoding="utf-8")
+    refused = irsim("validate", "room.yaml", code=2).stdout
+    assert "1 problem that IR-SIM 2.12 tolerates (irsim describe D4): irsim run warns and goes on" in refused
+    assert "tolerates (irsim describe D4): run and render go on" in irsim("run", "room.yaml", code=0).stderr
+    assert "an intended difference from IR-SIM 2.12" in irsim("describe", "D4", code=0).stdout
+    irsim("run", "room.yaml", "--strict", code=2)
+    room.write_text(text.replace("{name: dash}", "{name: dahs}"), encoding="utf-8")  # which a run refuses, too
+    assert "describe D4" not in irsim("validate", "room.yaml", code=2).stdout
+    irsim("run", "room.yaml", code=2)

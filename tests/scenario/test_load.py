@@ -255,6 +255,22 @@ def test_not_found_says_where_and_what_is_near(places: dict[str, Path]) -> None:
     assert "Did you mean" not in not_found("entirely-different.yaml")
 
 
+def test_hidden_folders_and_environments_are_not_named(
+    places: dict[str, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for scripts in (places["here"] / ".tools" / "bin", places["first"] / "env" / "bin"):
+        scripts.mkdir(parents=True)
+        (scripts.parent / "pyvenv.cfg").touch()
+        written(scripts / "halls.yaml")
+        monkeypatch.setattr(sys, "path", [str(scripts), *sys.path])
+        message = not_found("hall.yaml")
+        assert str(places["here"]) in message
+        assert str(scripts) not in message
+        assert "Did you mean" not in message
+    written(places["here"] / ".scenes" / "halls.yaml")
+    assert "halls.yaml" in not_found(".scenes/hall.yaml"), "a hidden folder that the user names"
+
+
 @pytest.mark.parametrize("wanted", ["doorway", "doorway.yaml", "templates/doorway", "templates/doorway/scenario.yaml"])
 def test_the_name_of_a_template_says_how_to_make_a_file_of_it(places: dict[str, Path], wanted: str) -> None:
     last = not_found(wanted).splitlines()[-1]
