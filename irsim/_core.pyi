@@ -496,6 +496,27 @@ class FmcwLidar2dOptions(_Options):
         realism: LidarErrors | None,
     ) -> None: ...
 
+class DepthScanOptions(_Options):
+    def __init__(
+        self,
+        *,
+        range_min: float,
+        range_max: float,
+        angle_range: float,
+        number: int,
+        endpoint: bool,
+        noise: bool,
+        std: float,
+        angle_std: float,
+        offset: Sequence[float],
+        has_velocity: bool,
+        realism: LidarErrors | None,
+        depth_min: float,
+        depth_std: float,
+        depth_growth: float,
+        depth_from: float,
+    ) -> None: ...
+
 class SonarOptions(_Options):
     def __init__(
         self,
@@ -526,6 +547,39 @@ class IrRangeOptions(_Options):
         resolution: float,
         dropout: float,
         folds: bool,
+    ) -> None: ...
+
+class BumperOptions(_Options):
+    def __init__(
+        self,
+        *,
+        sectors: Sequence[Sequence[float]],
+        reach: float,
+    ) -> None: ...
+
+class CliffOptions(_Options):
+    def __init__(
+        self,
+        *,
+        points: Sequence[Sequence[float]],
+        zones: Sequence[int],
+        miss_share: float,
+        false_share: float,
+    ) -> None: ...
+
+class UwbOptions(_Options):
+    def __init__(
+        self,
+        *,
+        anchors: Sequence[Sequence[float]],
+        offset: Sequence[float],
+        range_max: float,
+        std: float,
+        nlos_bias: float,
+        nlos_std: float,
+        outlier_share: float,
+        outlier_mean: float,
+        dropout: float,
     ) -> None: ...
 
 class OdometryOptions(_Options):

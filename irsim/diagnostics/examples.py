@@ -86,6 +86,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "fov-radius-ignored": ("robot: {fov_radius: 3}", "robot: {fov: 1.5708, fov_radius: 3}"),
     "fov-without-radius": ("robot: {fov: 1.5708}", "robot: {fov: 1.5708, fov_radius: 3}"),
     "fog-never-lifts": ("world: {fog_map: true}", "world: {fog_map: true}\nrobot: {sensors: [{name: lidar2d}]}"),
+    "cliff-without-zones": ("robot: {sensors: [{name: cliff}]}", "world: {zones: [{name: stairs, rectangle: [8, 4, 10, 6]}]}\nrobot: {sensors: [{name: cliff, zones: [stairs]}]}"),
     "fog-too-fine": ("world: {fog_map: true, fog_map_resolution: 0.0001}", "world: {fog_map: true, fog_map_resolution: 0.1}\nrobot: {sensors: [{name: lidar2d}]}"),
     "contact-without-mode": ("robot: {sensors: [{name: contact2d}]}", "world: {collision_mode: contact}\nrobot: {sensors: [{name: contact2d}]}"),
     "sample-time": ("world: {sample_time: 0.25, step_time: 0.1}", "world: {sample_time: 0.2, step_time: 0.1}"),

@@ -280,8 +280,8 @@ GUIDES: dict[str, Guide] = {
         "late is actuation: {delay: 0.1, lag: 0.2}. Doors and walls that open at a time or on a signal do not exist; "
         "an object that slides back and forth is an obstacle with kinematics omni and behavior {name: dash, loop: "
         "true}. No weather, slippery floors, speed zones, traffic "
-        "lights, right of way, priorities, batteries, radio, cameras or arms; "
-        "sensors are planar lidars, sonars, infrared range sensors, odometry, imu, gnss and localization. gravity, "
+        "lights, right of way, priorities, batteries, radio messages, pictures of cameras or arms; sensors are planar "
+        "lidars and depth scans, sonar, ir_range, bumper, cliff, uwb, odometry, imu, gnss and localization. gravity, "
         "friction and mass only affect pushing (collision_mode contact). Say what is not possible, and offer the "
         "closest alternative, labelled as such. (Speed limits are vel_min, vel_max and acce.)",
         None,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from irsim.bundled import templates
-from irsim.components.sensors._devices import DEVICES, INFRARED, SONARS, Device
+from irsim.components.sensors._devices import DEPTH_CAMERAS, DEVICES, INFRARED, SONARS, Device
 from irsim.components.sensors._realism import LidarRealism
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key, key_list, key_table, plain_table
@@ -118,11 +118,12 @@ def _shapes(source: _Source) -> str:
 
 
 def _sensors(source: _Source) -> str:
+    others = {**DEPTH_CAMERAS, **SONARS, **INFRARED}
     return (
         "`sensors: [{name: …}, …]`, a list. Lidars see all robots and obstacles that are not `unobstructed`.\n\n"
         + _components(source, "sensor")
         + "\n\nErrors of lidars beyond Gaussian noise, and lidars that one can buy, are in [lidars.md](lidars.md).\n\n"
-        + f"## Other range sensors that one can buy: `device`\n\n{_devices({**SONARS, **INFRARED})}\n\n"
+        + f"## Other range sensors that one can buy: `device`\n\n{_devices(others)}\n\n"
         + COLOR
     )
 

@@ -108,6 +108,17 @@ _VALUES: dict[str, Any] = {
     "ir_range.resolution": 0.005,
     "ir_range.std": 0.01,
     "ir_range.std_per_meter": 0.03,
+    "bumper.sectors": [[-1.2, -0.4], [-0.4, 0.4], [0.4, 1.2]],
+    "cliff.false_share": 0.01,
+    "cliff.miss_share": 0.02,
+    "cliff.points": [[0.2, -0.1], [0.2, 0.1]],
+    "cliff.zones": ["stairs"],
+    "depth_scan.depth_from": 0.4,
+    "depth_scan.depth_growth": 0.0025,
+    "depth_scan.depth_min": 0.28,
+    "depth_scan.depth_std": 0.001,
+    "depth_scan.device": "d435",
+    "depth_scan.plot": {"alpha": 0.1},
     "sonar.crosstalk": 0.02,
     "sonar.device": "hc_sr04",
     "sonar.dropout": 0.05,
@@ -115,6 +126,12 @@ _VALUES: dict[str, Any] = {
     "sonar.resolution": 0.003,
     "sonar.std": 0.01,
     "sonar.std_per_meter": 0.01,
+    "uwb.anchors": [[0, 0], [10, 0], [5, 10]],
+    "uwb.dropout": 0.05,
+    "uwb.nlos_bias": 0.3,
+    "uwb.nlos_std": 0.1,
+    "uwb.outlier_share": 0.1,
+    "uwb.range_max": 30,
     "incidence_max": 1.3,
     "material": "glass",
     "mixed": "nearest",
@@ -166,7 +183,7 @@ _TOGETHER: dict[str, dict[str, Any]] = {
     "fov": {"fov_radius": 4, "fov_occlusion": True, "plot": {"show_fov": True}},
     "fov_radius": {"fov": 1.5708, "plot": {"show_fov": True}},
     "fov_occlusion": {"fov": 1.5708, "fov_radius": 4},
-    **{f"{sensor}.std": {} for sensor in ("gnss", "ir_range", "sonar")},
+    **{f"{sensor}.std": {} for sensor in ("gnss", "ir_range", "sonar", "uwb")},
     "fade": {"range_dark": 4},
     "segments": {"sweep": True},
     "short_rate": {"short_share": 0.01},
@@ -215,9 +232,11 @@ def small_example(schema: Node, path: tuple[str, ...]) -> str | None:
     for place in range(len(path) - 1, 0, -1):
         word = path[place]
         if chain[place]:
-            if needed[place] - {"name", *value}:
+            missing = sorted(needed[place] - {"name", *value})
+            told = {key: _of(_VALUES, (*path[: place + 1], key)) for key in missing}
+            if None in told.values():
                 return None
-            value = {"name": word, **value}
+            value = {"name": word, **told, **value}
         else:
             value = {word: [value] if word in _LISTS and isinstance(value, dict) else value, **together}
             together = {}

@@ -33,7 +33,13 @@ EVERYDAY: dict[str, str] = {
     "720, 720 beams, 1080 beams, 360 beams, distance sensor, proximity sensor, beam, sensor range"
     ", laserscanner, abstandssensor, láser, escáner láser, 激光雷达, 激光",
     "robot.sensors.fmcw_lidar2d": "lidar, fmcw, fmcw lidar, doppler, radar, velocity lidar, radial velocity",
-    "robot.sensors.contact2d": "bumper, touch sensor, contact sensor, tactile",
+    "robot.sensors.bumper": "bumper, bump sensor, touch sensor, collision sensor, stoßstange, parachoques, 碰撞传感器",
+    "robot.sensors.cliff": "cliff, cliff sensor, drop sensor, edge detection, floor sensor, absturzsensor, 悬崖",
+    "robot.sensors.depth_scan": "depth camera, rgbd, realsense, kinect, d435, stereo camera, depth image, "
+    "tiefenkamera, 深度相机",
+    "robot.sensors.uwb": "uwb, ultra-wideband, beacon, anchors, radio ranging, dw1000, "
+    "trilateration, indoor positioning, funkbake, 超宽带",
+    "robot.sensors.contact2d": "contact sensor, contact forces, tactile, force sensor",
     "robot.sensors": "sensor",
     "robot.sensors.fmcw_lidar2d.motion_compensate": "ego motion, own motion",
     "robot.sensors.lidar2d.noise": "lidar noise, laser noise, sensor noise, measurement noise, noise",

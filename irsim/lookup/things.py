@@ -79,7 +79,7 @@ THINGS: dict[str, Guide] = {
         "kinematics diff and a disc of radius 0.17 m, 0.3 m/s",
         "It drives at random with behavior dash and wander: true (targets within range_low to range_high), or along "
         "waypoints in rows. Nothing is cleaned; world.fog_map with a short lidar measures the share of the floor that "
-        "it has seen. A bumper is the sensor contact2d; with collision_mode stop the first touch ends its run.",
+        "it has seen. Its sensors are bumper and cliff; with collision_mode stop the first touch ends its run.",
         "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.17}, state: [2, 2, 0],\n"
         "        vel_max: [0.3, 1.5], behavior: {name: dash, wander: true}}",
         (
@@ -136,14 +136,14 @@ THINGS: dict[str, Guide] = {
         ),
     ),
     "camera": Guide(
-        "no images; a field of view, or a lidar",
-        f"{NO} cameras and images: sensors are planar lidars. Nearest: fov of an object says whom it sees, with "
-        "fov_occlusion: true not through walls, and lidar2d measures ranges. For pictures from the robot, irsim bridge "
-        "preview renders a recorded run among splats, and irsim export --to colmap writes its camera poses.",
-        "robot: {fov: 1.5, fov_radius: 5, fov_occlusion: true, sensors: [{name: lidar2d, angle_range: 1.5}]}",
+        "no images; a depth camera as a scan, or a field of view",
+        f"{NO} cameras and images. Nearest: depth_scan is one row of a depth camera with its noise, and fov of an "
+        "object says whom it sees, with fov_occlusion: true not through walls. For pictures from the robot, irsim "
+        "bridge preview renders a recorded run among splats, and irsim export --to colmap writes its camera poses.",
+        "robot: {fov: 1.5, fov_radius: 5, fov_occlusion: true, sensors: [{name: depth_scan, device: d435}]}",
         (
-            *("depth camera", "rgb camera", "rgbd", "stereo camera", "webcam", "image", "vision"),
-            *("object detection", "point cloud", "kamera", "tiefenkamera", "cámara", "相机", "摄像头", "深度相机"),
+            *("rgb camera", "webcam", "image", "vision"),
+            *("object detection", "point cloud", "kamera", "cámara", "相机", "摄像头"),
         ),
     ),
     "compass": Guide(

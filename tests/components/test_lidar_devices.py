@@ -6,12 +6,14 @@ from typing import Any
 
 import pytest
 
-from irsim.components.sensors._devices import DEVICES, INFRARED, SONARS
+from irsim.components.sensors._devices import DEPTH_CAMERAS, DEVICES, INFRARED, SONARS
+from irsim.components.sensors.depth_scan import DepthScan
 from irsim.components.sensors.ir_range import IrRange
 from irsim.components.sensors.lidar2d import Lidar2d
 from irsim.components.sensors.sonar import Sonar
 
 OTHERS = [
+    *((DepthScan, "depth_scan", card) for card in DEPTH_CAMERAS.items()),
     *((Sonar, "sonar", card) for card in SONARS.items()),
     *((IrRange, "ir_range", card) for card in INFRARED.items()),
 ]

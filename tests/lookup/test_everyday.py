@@ -22,7 +22,7 @@ MEANT = {
     "360 degree lidar": "robot.sensors.lidar2d",
     "range finder": "robot.sensors.lidar2d",
     "doppler": "robot.sensors.fmcw_lidar2d",
-    "bumper": "robot.sensors.contact2d",
+    "bumper": "robot.sensors.bumper",
     "camera": "camera",
     "car": "robot.kinematics.acker",
     "ackermann": "robot.kinematics.acker",

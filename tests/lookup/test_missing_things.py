@@ -13,8 +13,8 @@ from irsim.scenario.locate import locate
 @pytest.mark.parametrize(
     ("asked", "nearest"),
     [
-        ("camera", "lidar2d"),
-        ("depth camera", "fov"),
+        ("camera", "fov"),
+        ("webcam", "depth_scan"),
         ("compass", "robot.state"),
         ("legs", "omni_angular"),
         ("gripper", "world.collision_mode: contact"),
@@ -38,6 +38,12 @@ def test_what_irsim_lacks_leads_to_the_limits_and_the_nearest_thing(asked: str, 
         ("IMU", "imu"),
         ("GPS", "gnss"),
         ("amcl", "localization"),
+        ("depth camera", "depth_scan"),
+        ("ultrasonic", "sonar"),
+        ("infrared", "ir_range"),
+        ("bumper", "bumper"),
+        ("cliff sensor", "cliff"),
+        ("ultra-wideband", "uwb"),
     ],
 )
 def test_what_irsim_has_by_now_leads_to_it(asked: str, sensor: str) -> None:

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-__all__ = ["DEVICES", "INFRARED", "SONARS", "Device", "DeviceName", "Source", "with_card"]
+__all__ = ["DEPTH_CAMERAS", "DEVICES", "INFRARED", "SONARS", "Device", "DeviceName", "Source", "with_card"]
 
 DeviceName = Literal[
     "rplidar_a1", "rplidar_a2", "rplidar_s2", "ust_10lx", "urg_04lx", "tim561", "lms1xx", "lms5xx", "lds_01", "lds_02",
@@ -202,6 +202,30 @@ DEVICES: Mapping[str, Device] = {
     ),
 }  # fmt: skip
 """Name of a lidar -> its card."""
+
+DEPTH_CAMERAS: Mapping[str, Device] = {
+    "d435": _device(
+        "Intel RealSense D435, one row of it",
+        (
+            Source(
+                "Intel data sheet of D400: base of 50 mm, 848 columns over 87 degrees, 0.28 m, error of 0.08 pixels"
+            ),
+            {**_sector(87.0, 848), "range_max": 10.0, "depth_min": 0.28, "depth_growth": 0.0025},
+        ),
+    ),
+    "kinect_v1": _device(
+        "Microsoft Kinect for Xbox 360, one row of it",
+        (
+            Source("Nguyen, Izadi, Lovell: Modeling Kinect Sensor Noise (2012): 0.0012 + 0.0019 (z - 0.4)^2"),
+            {"depth_std": 0.0012, "depth_growth": 0.0019, "depth_from": 0.4},
+        ),
+        (
+            Source("Microsoft Kinect SDK: 640 columns over 57 degrees, 0.8 to 4 m"),
+            {**_sector(57.0, 640), "range_max": 4.0, "depth_min": 0.8},
+        ),
+    ),
+}
+"""Name of a depth camera -> its card."""
 
 SONARS: Mapping[str, Device] = {
     "hc_sr04": _device(

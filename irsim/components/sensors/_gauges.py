@@ -22,6 +22,8 @@ class GaugeOptions(SensorOptions):
     reports: ClassVar[tuple[str, ...]] = ()
     """Names of its numbers, in their order; empty if they follow from the options."""
     report_units: ClassVar[tuple[str, ...]] = ()
+    zone_keys: ClassVar[tuple[str, ...]] = ()
+    """Keys that name zones of the world; the kernel has their numbers."""
 
     def numbers(self) -> tuple[tuple[str, str], ...]:
         """Name and unit of each of its numbers, in their order."""
@@ -33,7 +35,7 @@ class GaugeOptions(SensorOptions):
         Args:
             zones: Names of the zones of the world.
         """
-        return {}
+        return {key: [zones.index(name) for name in getattr(self, key) if name in zones] for key in self.zone_keys}
 
 
 class DriftOptions(GaugeOptions):

@@ -22,6 +22,7 @@ class Gnss(GaugeOptions):
     `quality` is 0 without reception (x and y are NaN), 1 alone, and with `rtk` 2 or 3, as corrections come and go.
     """
 
+    zone_keys: ClassVar[tuple[str, ...]] = ("blocked", "reflecting")
     reports: ClassVar[tuple[str, ...]] = ("x", "y", "quality", "std")
     report_units: ClassVar[tuple[str, ...]] = ("m", "m", "1", "m")
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "gnss", "std": 0.5, "drift_std": 2.0}]}
@@ -51,12 +52,6 @@ class Gnss(GaugeOptions):
     """Names of regions in which reflections from walls make the errors larger."""
     reflection: Annotated[Number, Field(ge=1, le=100)] = 3.0
     """How many times larger they are there."""
-
-    def resolved(self, zones: list[str]) -> dict[str, Any]:
-        """Fields of the kernel that are not as they are written: zones by their numbers."""
-        number = {name: [zones.index(zone) for zone in getattr(self, name) if zone in zones] for name in
-                  ("blocked", "reflecting")}  # fmt: skip
-        return {**super().resolved(zones), **number}
 
 
 SENSORS.register(Gnss, kernel=core.GnssOptions)

@@ -1,7 +1,8 @@
-// The common part of sensors that report numbers instead of ranges: the motion since the last step, and errors that
-// last.
+// The common part of sensors that report numbers instead of ranges: the motion since the last step, errors that last,
+// and zones.
 #pragma once
 
+#include "geometry/predicates.hpp"
 #include "integration.hpp"
 #include "sensing.hpp"
 
@@ -9,6 +10,16 @@ namespace irsim {
 
 /// The first numbers that such a sensor remembers: the step of its last reading, and the pose of the carrier then.
 constexpr int kGaugeMemory = 4;
+
+/// Whether a point is in one of some zones.
+inline bool in_zones(const World& world, const std::vector<int>& zones, Vec2 at) {
+  return std::any_of(zones.begin(), zones.end(), [&](int zone) {
+    const Footprint area = world.zones.footprint(zone);
+    const Part& part = area.parts[0];
+    if (part.kind == Kind::circle) return squared(at - *area.vertices) <= part.radius * part.radius;
+    return part.kind == Kind::polygon && inside_ring(area.vertices + part.first, part.last - part.first, at);
+  });
+}
 
 /// The motion of a body since the last step, in its own frame: an arc of constant speed and yaw rate.
 struct Travel {

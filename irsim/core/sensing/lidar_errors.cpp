@@ -190,6 +190,8 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
   for (int i = 0; i < n; ++i) {
     int hit = beams.hit[i];
     bool returned = hit >= 0 && !(steep && beams.cosine[i] < least_cosine);
+    const double ahead = limits.depth == nullptr ? 1.0 : s.mount.cosine[i];  // share of the range along the axis
+    if (limits.depth != nullptr) returned = returned && beams.range[i] * ahead >= limits.depth->nearest;
     if (returned && dim) {
       const double share = s.world.reflectivity[hit] * beams.cosine[i] * beams.power[i];
       returned = detected(beams.range[i], share, [&] { return details.uniform(4 * (first + i)); });
@@ -197,7 +199,8 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
     double range = limits.farthest;
     if (returned) {
       const double exact = beams.range[i], grown = errors.std_per_meter * exact;
-      const double sigma = std::sqrt(limits.std * limits.std + grown * grown);
+      const double along = limits.depth == nullptr ? 0.0 : limits.depth->sigma(exact * ahead) / ahead;
+      const double sigma = std::sqrt(limits.std * limits.std + grown * grown + along * along);
       range = std::max(0.0, scale * exact + bias);
       if (sigma > 0.0) range = std::max(0.0, range + s.noise() * sigma * normal(first_draw + i));
     }

@@ -46,10 +46,19 @@ struct LidarErrors {
 
 inline bool operator==(const LidarErrors& a, const LidarErrors& b) { return same(a, b); }
 
+/// How the depth of a depth camera errs, which is the range along its axis: the standard deviation is
+/// std + growth (depth - from)^2. It is blind below `nearest`.
+struct DepthErrors {
+  double nearest, std, growth, from;  // [m], [m], [1/m], [m]
+
+  double sigma(double depth) const { return std + growth * (depth - from) * (depth - from); }
+};
+
 /// The options of a lidar that errors build on.
 struct RangeLimits {
-  double nearest, farthest;  // [m]
-  double std;                // of its ranges, 0 without noise [m]
+  double nearest, farthest;            // [m]
+  double std;                          // of its ranges, 0 without noise [m]
+  const DepthErrors* depth = nullptr;  // of depth cameras
 };
 
 class Surface;

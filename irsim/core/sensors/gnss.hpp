@@ -2,7 +2,6 @@
 #pragma once
 
 #include "fields.hpp"
-#include "geometry/predicates.hpp"
 #include "sensing/gauges.hpp"
 
 namespace irsim {
@@ -34,16 +33,6 @@ inline std::vector<double> beams(const GnssOptions&) { return {}; }
 inline int readings(const GnssOptions&) { return 4; }
 /// The wandering error x, y, and whether all corrections are there.
 inline int memory(const GnssOptions&) { return kGaugeMemory + 3; }
-
-/// Whether a point is in one of some zones.
-inline bool in_zones(const World& world, const std::vector<int>& zones, Vec2 at) {
-  return std::any_of(zones.begin(), zones.end(), [&](int zone) {
-    const Footprint area = world.zones.footprint(zone);
-    const Part& part = area.parts[0];
-    if (part.kind == Kind::circle) return squared(at - *area.vertices) <= part.radius * part.radius;
-    return part.kind == Kind::polygon && inside_ring(area.vertices + part.first, part.last - part.first, at);
-  });
-}
 
 inline void gnss(const GnssOptions& o, const Sensing& s) {
   Travel travel;

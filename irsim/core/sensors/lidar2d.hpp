@@ -51,19 +51,28 @@ inline int sweep_parts(const Lidar2dOptions& options) {
   return options.realism && options.realism->beam_time > 0.0 ? options.realism->segments : 1;
 }
 
+/// The draw of the range of beam 0; a scan has n draws of ranges and n of directions.
+inline std::uint64_t first_draw_of(const Sensing& s) {
+  return 2 * s.scan_number() * static_cast<std::uint64_t>(s.mount.count);
+}
+
+/// Take a scan whose ranges have the errors of `realism`, and those of a depth camera if `depth` is given.
+inline void scan_with_errors(const Lidar2dOptions& options, const Sensing& s, const DepthErrors* depth = nullptr) {
+  const double std = options.noise && options.std > 0.0 ? options.std : 0.0;
+  const RangeLimits limits{options.range_min, options.range_max, std, depth};
+  sweep(*options.realism, s, [&](const Sensing& part) {
+    const std::uint64_t first = first_draw_of(s) + part.first_beam;
+    const Fan fan = cast_beams(options, part, first + s.mount.count);
+    write_with_errors(*options.realism, limits, part, fan, first);
+  });
+  write_velocities(options, s);
+}
+
 inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
+  if (options.realism) return scan_with_errors(options, s);
   const int n = s.mount.count;
-  const std::uint64_t first_draw = 2 * s.scan_number() * static_cast<std::uint64_t>(n);  // n ranges, n directions
+  const std::uint64_t first_draw = first_draw_of(s);
   const bool noisy = options.noise && options.std > 0.0;
-  if (options.realism) {
-    const RangeLimits limits{options.range_min, options.range_max, noisy ? options.std : 0.0};
-    sweep(*options.realism, s, [&](const Sensing& part) {
-      const std::uint64_t first = first_draw + part.first_beam;
-      const Fan fan = cast_beams(options, part, first + n);
-      write_with_errors(*options.realism, limits, part, fan, first);
-    });
-    return write_velocities(options, s);
-  }
   const Fan fan = cast_beams(options, s, first_draw + n);
   NormalDraws normal(s.draws());
   // Copies, because for all that the compiler knows, writing a byte of `valid` could change what these point to.

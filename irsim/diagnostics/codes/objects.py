@@ -297,6 +297,9 @@ OBJECTS: dict[str, Code] = {
     "fog-never-lifts": Code(
         "no robot can see", "Robots clear the fog with a lidar, or with 'fov' and 'fov_radius'. Obstacles do not."
     ),
+    "cliff-without-zones": Code(
+        "no drop for a cliff sensor", "The sensor 'cliff' sees a drop in the regions that its key 'zones' names."
+    ),
     "fog-too-fine": Code(
         "too many cells of fog", "A fog map may have 16 million cells: the extent of the world over the cell size."
     ),

@@ -7,7 +7,7 @@ nor goals are.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from irsim.components.behaviors.follow import Follow
 from irsim.diagnostics.diagnostic import Edit, Path, nearest
@@ -45,20 +45,31 @@ def _avoided(context: Context, path: Path, record: ObjectRecord, options: Follow
     for index, name in enumerate(options.avoid):
         where = (*path, index)
         if name not in zones:
-            near = nearest(name, zones)
-            yield error(
-                "unknown-zone",
-                where,
-                f"no zone is called '{name}'" + ("" if zones else ": world.zones is empty"),
-                given=name,
-                allowed=list(zones)[:_MAX_NAMES] or None,
-                fix=f"write '{near}'"
-                if near
-                else f"world: {{zones: [{{name: {name}, circle: {{center: [x, y], radius: r}}}}]}} makes it",
-                edit=Edit("replace", where, near) if near else None,
-            )
+            yield unknown_zone(where, name, zones)
         elif known:
             yield from _ends_in_zone(where, record, zones[name])
+
+
+def unknown_zone(where: Path, name: str, zones: Collection[str]) -> Finding:
+    """The finding about a name that no zone has.
+
+    Args:
+        where: Path of the name.
+        name: The name.
+        zones: Names of the zones of the world.
+    """
+    near = nearest(name, zones)
+    return error(
+        "unknown-zone",
+        where,
+        f"no zone is called '{name}'" + ("" if zones else ": world.zones is empty"),
+        given=name,
+        allowed=list(zones)[:_MAX_NAMES] or None,
+        fix=f"write '{near}'"
+        if near
+        else f"world: {{zones: [{{name: {name}, circle: {{center: [x, y], radius: r}}}}]}} makes it",
+        edit=Edit("replace", where, near) if near else None,
+    )
 
 
 def ends_fit(options: Follow, places: Sequence[Sequence[float]], zones: Sequence[Zone], radius: float) -> bool:

@@ -10,6 +10,7 @@ from irsim.common.angles import FULL_TURN
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.options.units import is_span
 from irsim.scenario.checks._context import Context
+from irsim.scenario.checks.regions import unknown_zone
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.lookup import at
 from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, reach_of
@@ -68,6 +69,17 @@ def _sensor(context: Context, path: Any, sensor: Any) -> Iterator[Finding]:
         if not isinstance(written, (int, float)) or is_span(written):
             yield from _beams(path, sensor)
         yield from _keys_without_effect(path, sensor)
+    zones = [zone.name for zone in context.scenario.world.zones]
+    for key in getattr(sensor, "zone_keys", ()):
+        names = getattr(sensor, key)
+        yield from (unknown_zone((*path, key, k), name, zones) for k, name in enumerate(names) if name not in zones)
+    if sensor.name == "cliff" and not sensor.zones:
+        yield hint(
+            "cliff-without-zones",
+            path,
+            "without 'zones' there is floor everywhere: nothing drops",
+            fix="zones: [stairs], with a region of that name among world.zones",
+        )
     if sensor.name == "contact2d" and context.scenario.world.collision_mode != "contact":
         yield hint(
             "contact-without-mode", path, "without 'collision_mode: contact' there are no contact forces to show"
