@@ -5,6 +5,7 @@ properties are writable views of the memory of the core (no copies), of type flo
 """
 
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from typing import Any, ClassVar, TypeVar, overload
 
 import numpy as np
@@ -641,6 +642,30 @@ class GnssOptions(_Options):
         reflection: float,
     ) -> None: ...
 
+class DetectorOptions(_Options):
+    """`targets` is "all", "robot" or "obstacle"."""
+
+    def __init__(
+        self,
+        *,
+        offset: Sequence[float],
+        range_max: float,
+        angle_range: float,
+        targets: str,
+        probability: float,
+        half_range: float,
+        range_softness: float,
+        occlusion: bool,
+        min_visible: float,
+        position_std: float,
+        velocity_std: float,
+        false_tracks: float,
+        false_radius: float,
+        id_switches: float,
+        keep: float,
+        max_tracks: int,
+    ) -> None: ...
+
 class LocalizationOptions(_Options):
     def __init__(
         self,
@@ -817,6 +842,8 @@ class ObjectSpec:
         reflectivity: Share of the light of lidars that its surface throws back.
         material: What its surface does with the light of lidars with errors: "matt", "glass" or "mirror".
         actuation: What happens to commands before the drive executes them; None executes them at once, within limits.
+        perceives_estimate: Whether it decides from the pose that its localization, or else its odometry, reports.
+        perceives_tracks: Whether it decides from the tracks of its detector instead of other moving objects.
     """
 
     def __init__(
@@ -861,6 +888,8 @@ class ObjectSpec:
         reflectivity: float,
         material: str,
         actuation: Actuation | None,
+        perceives_estimate: bool,
+        perceives_tracks: bool,
     ) -> None: ...
 
 class RandomPlacement:
@@ -1069,6 +1098,7 @@ class State:
     touching: Flags  # (R,) bit 0: in contact in the last step, bit 1: in the one before
     given: Flags  # (R,) 1: the caller wrote `command`, so behaviors skip the row; every step clears it
     arrived: Flags  # (R,)
+    believes_arrived: Flags  # (R,) of rows that go by an estimate: whether they rest where they take their goal to be
     collided: Flags  # (R,)
     stopped: Flags  # (R,)
     radius: Floats  # (R,) radius of the minimum bounding circle [m]
@@ -1125,6 +1155,8 @@ class State:
         """
     def refresh(self) -> None:
         """Re-evaluate geometry, collisions, stops and sensors (not arrival) after poses were written."""
+    def all_done(self) -> Flags:
+        """(W,) whether every robot of each world has arrived or stopped; False without robots."""
     def done(self, world: int) -> bool:
         """Whether every robot of the world has arrived or stopped; False without robots."""
     def events(self, world: int, start: int = 0) -> list[tuple[str, int, int, int, float, float]]:
@@ -1271,7 +1303,7 @@ class Log:
     def flag_rows(self) -> NDArray[np.int64]: ...
     @property
     def flags(self) -> Flags:
-        """(flag_rows, N) sums of 1 arrived, 2 collided, 4 stopped."""
+        """(flag_rows, N) sums of 1 arrived, 2 collided, 4 stopped, 8 believes to have arrived."""
 
     @property
     def scan_rows(self) -> NDArray[np.int64]: ...
@@ -1340,6 +1372,19 @@ def follow_rows(world: World, state: State, rows: NDArray[np.int64], velocities:
 
     A row with a drive in Python gets the velocity as its command.
     """
+
+def believed_rows(world: World, state: State, rows: NDArray[np.int64]) -> tuple[Floats, Floats, Flags]:
+    """What (B,) rows believe of themselves: (B, 3) poses, (B, 2) world-frame velocities, (B,) whether they arrived.
+
+    Of rows that go by no estimate it is the truth.
+    """
+
+class Belief(AbstractContextManager[None]):
+    """Context in which the state holds what one row believes: its own pose, and other moving objects."""
+
+    def __init__(self, world: World, state: State, row: int) -> None: ...
+    def __enter__(self) -> None: ...
+    def __exit__(self, kind: object, error: object, trace: object) -> None: ...
 
 def bounding_circles(world: World, state: State) -> Floats:
     """(R, 3) x, y of the centre and radius of the minimum bounding circle of each row at its present pose [m]."""

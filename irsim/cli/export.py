@@ -87,7 +87,7 @@ def export(
     if objects is not None and objects not in CHOICES:
         chosen = [name.strip() for name in objects.split(",") if name.strip()]
     if (file := next((one for one in runs or () if Path(one).suffix and not is_run(one)), None)) is not None:
-        raise InputError(f"{file!r} is no recorded run", f"name the file to write with -o: -o {shlex.quote(file)}")
+        raise InputError(f"{file!r} is not a recorded run", f"name the file to write with -o: -o {shlex.quote(file)}")
     before = existing(out)
     with going_on(lambda: f"nothing was written; again: {again()}"), progress("exporting") as report:
         result = export_run(

@@ -16,7 +16,7 @@ def seed_option(about: str, *, largest: int = 2**64 - 1) -> Any:
     """The option ``--seed``: its help says which numbers it takes, and a message about another one says the largest.
 
     Args:
-        about: What the seed decides, and its default.
+        about: The things that the seed decides, and its default.
         largest: The largest seed.
     """
     return typer.Option(

@@ -19,6 +19,7 @@ EventKind = Literal[
     "sight_end",
     "contact_between_steps",
     "passed_through",
+    "believed_arrival",
 ]
 """Kinds of events; :class:`irsim.simulation.events.Event` says what they mean."""
 SIGHTS: tuple[EventKind, ...] = ("sight_start", "sight_end")
@@ -48,5 +49,7 @@ EVENTS: dict[str, str] = {
     "world.contacts: swept makes it one, world.collision_mode: contact stops the robot at the wall, a smaller "
     "world.step_time makes it rare. Before a run, irsim validate warns of it with jumps-through. The metric "
     "contacts_between_steps counts it, too; pictures and pages mark it with a red diamond.",
+    "believed_arrival": "A robot that perceives an estimate rests where it believes its last goal to be; the metric "
+    "success_in_belief counts it. Whether it is there says arrival.",
 }
 """Meaning of each kind of event."""

@@ -303,6 +303,7 @@ EXTENSIONS: dict[str, str] = {
     "entry.fov_occlusion": "hidden objects are not seen",
     "entry.reflectivity": "for lidars with `realism`",
     "entry.material": "for lidars with `realism`",
+    "entry.perceives": "behaviors and policies decide from an estimate of the pose, or from tracks of other objects",
     **{f"sensor.{lidar}.device": "a lidar that one can buy" for lidar in ("lidar2d", "fmcw_lidar2d")},
     **{f"sensor.{lidar}.realism": "errors of its ranges" for lidar in ("lidar2d", "fmcw_lidar2d")},
     "behavior.follow": "plan a path and follow it with a local behavior",

@@ -29,7 +29,7 @@ struct Sensing {
   double* velocities;             // (velocity_rows, mount.count) [m/s]
   double* readings;               // (mount.readings,)
   double* memory;                 // (mount.memory,)
-  const Vec2* object_velocities;  // (N,) world frame [m/s]; null when no sensor of the world has velocity rows
+  const Vec2* object_velocities;  // (N,) world frame [m/s]; null when no sensor of the world measures velocities
   BeamBuffers &buffers, &spare;
   const std::vector<Mount>& parts;    // beams that are cast one part after the other; empty: all at once
   Outlines& ghosts;                   // scratch: the moving objects at another time

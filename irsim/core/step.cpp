@@ -1,5 +1,6 @@
 // One period of one world. This page is the simulator; all other files say how.
 #include "phases.hpp"
+#include "surroundings/perception.hpp"
 
 namespace irsim {
 
@@ -21,7 +22,8 @@ bool done(const World& world, const State& state, int w) {
   const int first = w * world.objects;
   for (const int i : world.robots) {
     if (!state.takes_part[first + i]) continue;
-    if (!state.arrived[first + i] && !state.stopped[first + i]) return false;
+    const auto& arrived = estimates(world, i) ? state.believes_arrived : state.arrived;
+    if (!arrived[first + i] && !state.stopped[first + i]) return false;
   }
   return !world.robots.empty();
 }

@@ -110,6 +110,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "actuation-unused": ("robot: {kinematics: null, behavior: null, actuation: {delay: 0.1}}", "robot: {actuation: {delay: 0.1}}"),
     "reacts-late": ("robot: {behavior: {name: orca}, actuation: {delay: 0.3}}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0]}", "robot: {behavior: {name: orca}, actuation: {delay: 0.04}}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0]}"),
     "lag-twice": ("robot: {kinematics: {name: diff, tau: 0.1}, actuation: {lag: 0.2}}", "robot: {kinematics: {name: diff}, actuation: {lag: 0.2}}"),
+    "perceives-without-sensor": ("robot: {perceives: estimate}", "robot: {perceives: estimate, sensors: [{name: localization}]}"),
     "coarse-steps": ("world: {step_time: 0.5}\nrobot: {vel_max: [0.3, 1.5], vel_min: [-0.3, -1.5]}", "world: {step_time: 0.5, integration: exact}\nrobot: {vel_max: [0.3, 1.5], vel_min: [-0.3, -1.5]}"),
     "crowd-stops": ("obstacle: {number: 6, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, distribution: {name: random}, behavior: {name: sfm, wander: true}}", "world: {collision_mode: unobstructed_obstacles}\nobstacle: {number: 6, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, distribution: {name: random}, behavior: {name: sfm, wander: true}}"),
     "unobstructed-robot": ("robot: {unobstructed: true}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0]}", "robot: {behavior: {name: dash}}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0], unobstructed: true}"),

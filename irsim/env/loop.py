@@ -14,6 +14,7 @@ from irsim.env.state import EnvState
 from irsim.objects.actions import assign_actions
 from irsim.simulation.active_env import use
 from irsim.simulation.events import BETWEEN_STEPS, Event, read_events
+from irsim.simulation.outcome import at_rest
 from irsim.simulation.protocols import EpisodeRecorder
 from irsim.simulation.trace import Rollout, record_rollout
 
@@ -168,7 +169,7 @@ def done(env: EnvState, mode: str = "all") -> bool | None:
     simulation = env._simulation
     if mode == "all":
         return simulation.state.done(0)
-    ended = (simulation.arrived | simulation.stopped)[simulation.robots]
+    ended = at_rest(simulation)[simulation.robots]
     return bool(ended.any()) if mode == "any" else None
 
 

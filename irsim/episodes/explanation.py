@@ -37,7 +37,7 @@ from irsim.episodes.watching import sights_message, zones_message
 from irsim.results.episode import Left, RobotResult, ZoneResult
 from irsim.results.run import HorizonSource
 from irsim.simulation.events import Event
-from irsim.simulation.outcome import moves_by_itself
+from irsim.simulation.outcome import is_over, moves_by_itself
 from irsim.simulation.roles import name_of_humans
 
 if TYPE_CHECKING:
@@ -245,7 +245,9 @@ def reason_message(facts: EpisodeFacts, robots: list[RobotResult], source: Horiz
         reasons.append(hit + (f" (in all {others + 1} robots collided)" if others else "") + _horizons(facts, collided))
     rows = {record.name: row for row, record in facts.robots.items()}
     limit = f"{seconds(facts.time)}, when the run ended (until: first_collision),"
-    if source is not None:
+    if source is not None and is_over(facts.simulation):
+        limit = f"{seconds(facts.time)}, when all robots rested,"
+    elif source is not None:
         limit = f"the time limit of {seconds(facts.time)} ({_LIMIT_SOURCES[source]})"
     late = [robot for robot in robots if robot.outcome == "timeout" and robot.name not in facts.parked]
     if late:
@@ -310,6 +312,8 @@ def _state(facts: EpisodeFacts, row: int, robot: RobotResult) -> str:
     speed = float(np.linalg.norm(view.velocity_xy))
     standing = min(_MAX_STANDING_SPEED, view.max_speed / 10 or _MAX_STANDING_SPEED)
     place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
+    if record.estimates and simulation.state.believes_arrived[row]:
+        return f"rests {place}, where it believes its goal to be"
     x, y, _ = robot.pose
     west, south, east, north = facts.scenario.world.bounds
     if not (west <= x <= east and south <= y <= north):

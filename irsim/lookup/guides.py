@@ -281,9 +281,9 @@ GUIDES: dict[str, Guide] = {
         "an object that slides back and forth is an obstacle with kinematics omni and behavior {name: dash, loop: "
         "true}. No weather, slippery floors, speed zones, traffic "
         "lights, right of way, priorities, batteries, radio messages, pictures of cameras or arms; sensors are planar "
-        "lidars and depth scans, sonar, ir_range, bumper, cliff, uwb, odometry, imu, gnss and localization. gravity, "
-        "friction and mass only affect pushing (collision_mode contact). Say what is not possible, and offer the "
-        "closest alternative, labelled as such. (Speed limits are vel_min, vel_max and acce.)",
+        "lidars and depth scans, sonar, ir_range, bumper, cliff, uwb, odometry, imu, gnss, localization and detectors. "
+        "gravity, friction and mass only affect pushing (collision_mode contact). Say what is not possible, and offer "
+        "the closest alternative, labelled as such. (Speed limits are vel_min, vel_max and acce.)",
         None,
         (
             *("limitations", "not possible", "impossible", "unsupported", "not simulated", "3d", "z", "altitude"),

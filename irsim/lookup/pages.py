@@ -8,6 +8,7 @@ from typing import Any
 
 from irsim.bundled import templates
 from irsim.components.sensors._devices import DEPTH_CAMERAS, DEVICES, INFRARED, SONARS, Device
+from irsim.components.sensors._gauges import GaugeOptions
 from irsim.components.sensors._realism import LidarRealism
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key, key_list, key_table, plain_table
@@ -121,10 +122,24 @@ def _sensors(source: _Source) -> str:
     others = {**DEPTH_CAMERAS, **SONARS, **INFRARED}
     return (
         "`sensors: [{name: …}, …]`, a list. Lidars see all robots and obstacles that are not `unobstructed`.\n\n"
-        + _components(source, "sensor")
+        + _components(source, "sensor", among=lambda options: not _locates(options))
+        + "\n\nSensors that tell a robot where it is, how it moves and where others are have a page of their own: "
+        "[perception.md](perception.md)."
         + "\n\nErrors of lidars beyond Gaussian noise, and lidars that one can buy, are in [lidars.md](lidars.md).\n\n"
         + f"## Other range sensors that one can buy: `device`\n\n{_devices(others)}\n\n"
         + COLOR
+    )
+
+
+def _locates(options: Any) -> bool:
+    return issubclass(options, GaugeOptions) and options.locates
+
+
+def _perception(source: _Source) -> str:
+    return (
+        "Sensors that tell a robot where it is, how it moves and where others are, each with its errors. A program "
+        "reads them by name (`sensor.read()`); with `perceives` the behavior or policy of the robot goes by them.\n\n"
+        f"{_components(source, 'sensor', among=_locates)}"
     )
 
 
@@ -231,9 +246,11 @@ def _keys(source: _Source, topic: str) -> str:
     return key_table(_all_keys(answer), missing).strip()
 
 
-def _components(source: _Source, kind: str, level: str = "##") -> str:
+def _components(
+    source: _Source, kind: str, level: str = "##", among: Callable[[Any], bool] = lambda options: True
+) -> str:
     """Return a section for each component of a kind, after a table of the keys that all of them have."""
-    features = REGISTRIES[kind].features()
+    features = [feature for feature in REGISTRIES[kind].features() if among(feature.options)]
     answers = {feature.name: source.about(f"{kind}.{feature.name}") for feature in features}
     common = [key for key in _all_keys(answers[features[0].name]) if all(key in _all_keys(a) for a in answers.values())]
     parts = [f"Keys that all of them have:\n\n{key_table(common)}"] if common else []
@@ -269,6 +286,7 @@ PAGES: dict[str, tuple[str, Callable[[_Source], str]]] = {
     "behaviors": ("Behaviors", _behaviors),
     "sensors": ("Sensors", _sensors),
     "lidars": ("Lidars as they are", _lidars),
+    "perception": ("Knowing where one is, and where others are", _perception),
     "distributions": ("Distributions", _distributions),
     "plot": ("Plot", _plot),
     "templates": ("Templates", _templates),

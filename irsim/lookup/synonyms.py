@@ -25,6 +25,10 @@ EVERYDAY: dict[str, str] = {
     "drift, odometrie, odometría, 里程计",
     "robot.sensors.imu": "imu, accelerometer, gyroscope, gyro, inertial sensor, inertial measurement unit, "
     "beschleunigungssensor, acelerómetro, 惯性",
+    "robot.sensors.detector": "detector, people detector, person detector, leg detector, tracker, tracking, tracks, "
+    "perception, missed detections, false positives, occlusion, detektor, personenerkennung, 行人检测",
+    "robot.perceives": "perceives, belief, believed pose, estimated pose, localization error, perception, "
+    "ground truth, partial observability, noisy state",
     "robot.sensors.gnss": "gnss, gps, satellite navigation, satellite, rtk, galileo, glonass",
     "robot.sensors.localization": "localization, localisation, slam, amcl, pose estimate, estimated pose, "
     "map frame, 定位",

@@ -122,6 +122,9 @@ def _extras() -> tuple[Metric, ...]:
         less("near_misses", "count", "times a human came within 0.2 m and went without contact"),
         less("freezing_count", "count", "stalls of 2 s or more, not arrived"),
         less("freezing_time", "s", "time in such stalls"),
+        more(
+            "success_in_belief", "0/1", "where it perceives an estimate: believed to have arrived, no collision", "all"
+        ),
         more("min_clearance", "m", "smallest distance to anything that can be hit, surface to surface", "min"),
         less(
             "contacts_between_steps",

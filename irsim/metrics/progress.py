@@ -119,6 +119,8 @@ def outcome_metrics(track: Track) -> dict[str, float]:
       ``wall_``, ``agent_``, ``human_collisions`` of them by partner. ``collision_steps``: steps in contact.
     - ``contacts_between_steps``: contacts, per unordered pair, with nothing touched at either end of the step, until it
       arrived; ``collision_count`` has them, too, only where ``world.contacts: swept`` makes them collisions.
+    - ``success_in_belief``: of a robot that goes by an estimate, whether it believed to have arrived, and no contact
+      began before it really did.
     - ``timeout``: neither arrived nor stopped by a collision at the end; a contact after which the robot drives on
       (``world.collision_mode``) counts as a contact, not as the end.
     - ``time_to_goal`` [s]: time of the first arrival; NaN without one. ``driving_time`` [s]: time from when it came
@@ -136,6 +138,7 @@ def outcome_metrics(track: Track) -> dict[str, float]:
         "agent_collisions": float(agents),
         "human_collisions": float(humans),
         "contacts_between_steps": float(track.between_steps),
+        "success_in_belief": float("nan") if track.believed is None else float(track.believed and not track.collisions),
         "timeout": float(track.arrival is None and not (kinds and track.stopped)),
         "arrived_share": float(track.arrival is not None),
         "driving_time": (len(track.pose) - 1) * track.step_time,

@@ -60,6 +60,7 @@ class Track:
         reach: Bounding radius of the robot [m].
         top_speed: Greatest speed limit, forward or sideways [m/s].
         holonomic: Whether it can move in another direction without turning.
+        believed: Whether it believed at some time to have arrived; None if it does not go by an estimate.
     """
 
     name: str
@@ -85,6 +86,7 @@ class Track:
     reach: float
     top_speed: float
     holonomic: bool
+    believed: bool | None = None
 
     @property
     def position(self) -> Floats:
@@ -158,7 +160,7 @@ def tracks(
     kinds, groups = kinds_of(records), social_groups(records)
     passable = {record.name for record in records if record.unobstructed}
     number = {name: index for index, name in enumerate(trace.names)}
-    arrivals = first_events(events, "arrival")
+    arrivals, beliefs = first_events(events, "arrival"), first_events(events, "believed_arrival")
     brief = [event for event in events if event.kind in BETWEEN_STEPS]
     humans = np.flatnonzero(kinds == HUMAN)
     beside = static_distance(trace.pose, simulation, humans.tolist())
@@ -210,6 +212,7 @@ def tracks(
                 reach=float(radii[robot]),
                 top_speed=_top_speed(simulation.limits(robot)[1], record.kinematics),
                 holonomic=getattr(record.kinematics, "speeds", 0) == 2,
+                believed=name in beliefs if record.perceives in ("estimate", "both") else None,
             )
         )
     return result

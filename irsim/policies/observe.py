@@ -184,15 +184,16 @@ class Observer:
         simulation, needs = self._simulation, self._needs
         world, robot = np.divmod(rows, simulation.objects)
         step_time = float(simulation.scenario.world.step_time)
+        pose, velocity, arrived = core.believed_rows(simulation.world, simulation.state, rows)
         return Observations(
             world=slot,
             robot=simulation.ids[robot].astype(np.int64),
             first=first,
             time=simulation.count[world].astype(np.float64) * step_time,
             step_time=step_time,
-            pose=simulation.pose[rows],
+            pose=pose,
             steering=np.where(self._steered[robot], simulation.extra[rows, 0], 0.0),
-            velocity=simulation.twist[rows, :2],
+            velocity=velocity,
             yaw_rate=simulation.twist[rows, 2],
             control=simulation.control[rows],
             goal=simulation.goal[rows],
@@ -200,7 +201,7 @@ class Observer:
             radius=simulation.radius[rows],
             low=simulation.state.vel_min[rows],
             high=simulation.state.vel_max[rows],
-            arrived=simulation.arrived[rows].astype(bool),
+            arrived=arrived.astype(bool),
             neighbors=self._neighbors(rows) if needs.neighbors > 0 else None,
             scan=self._scan(world, robot) if needs.scan else None,
             maps=None if self._grids is None else self._grids.of(world),

@@ -158,6 +158,8 @@ def build_object(
         vanish_step=0 if record.vanish_time is None else 1 + steps_within(record.vanish_time, step_time),
         reflectivity=record.reflectivity,
         material=record.material,
+        perceives_estimate=record.perceives in ("estimate", "both"),
+        perceives_tracks=record.perceives in ("tracks", "both"),
     )
 
 

@@ -49,7 +49,8 @@ class Event(NamedTuple):
             scenario gives the object with ``fov``; of static obstacles only those with tags count),
             ``contact_between_steps`` (two objects that are apart at the beginning and at the end of a step touch
             within it), ``passed_through`` (likewise, and the middle of one of them went through the other, as a fast
-            robot through a thin wall).
+            robot through a thin wall), ``believed_arrival`` (a robot that perceives an estimate rests where it believes
+            its last goal to be; ``arrival`` says whether it is there).
         time: Simulated time [s]; of a contact between steps, and of a collision with ``world.contacts: swept``, when
             the two first touch within the step.
         step: Number of executed steps at the event, with the step of the event itself; 0 is the initial state.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irsim.simulation.events import Event, first_collisions, first_events, read_events
 
@@ -12,7 +13,16 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Outcome", "collided_robots", "explored_share", "is_over", "moves_by_itself", "outcome_of", "robot_outcomes"]
+__all__ = [
+    "Outcome",
+    "at_rest",
+    "collided_robots",
+    "explored_share",
+    "is_over",
+    "moves_by_itself",
+    "outcome_of",
+    "robot_outcomes",
+]
 
 Outcome = Literal["running", "success", "collision", "timeout"]
 
@@ -82,6 +92,15 @@ def outcome_of(simulation: Simulation, world: int = 0, *, time_limit: float | No
     return "collision" if "collision" in outcomes else "timeout"
 
 
+def at_rest(simulation: Simulation) -> NDArray[np.uint8]:
+    """(R,) whether each object has arrived or stopped; for one that goes by an estimate, whether it believes so."""
+    estimating = [record.estimates for record in simulation.scenario.objects]
+    arrived = simulation.arrived
+    if any(estimating):
+        arrived = np.where(np.tile(estimating, simulation.copies), simulation.state.believes_arrived, arrived)
+    return arrived | simulation.stopped
+
+
 def is_over(simulation: Simulation, world: int = 0) -> bool:
     """Whether every robot has arrived or stopped; without robots, whether everything else that moves has.
 
@@ -89,7 +108,7 @@ def is_over(simulation: Simulation, world: int = 0) -> bool:
     """
     if simulation.robots.any():
         return bool(simulation.state.done(world))
-    ended = simulation.arrived | simulation.stopped
+    ended = at_rest(simulation)
     return all(
         ended[row] and not (record.wander or record.loop or record.vanish_time)
         for row, record in enumerate(simulation.scenario.objects, world * simulation.objects)

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.common.arrays import range_of
 from irsim.common.log import Logger
 from irsim.diagnostics.errors import PlacementError
 from irsim.simulation.build import COLLISION_MODES, Built, build_world, speed_controls
@@ -134,7 +133,6 @@ class Simulation:
         self.names.update((record.id, record.name) for record in records)
         self.passable -= {record.id for record in records}
         self.passable |= {record.id for record in records if record.unobstructed}
-        self._robot_columns = range_of(self.robots)
 
     def exchange(self, scenario: ResolvedScenario, origins: Sequence[tuple[Simulation, int]]) -> None:
         """Continue with other objects.
@@ -341,9 +339,7 @@ class Simulation:
 
     def done(self) -> NDArray[np.bool_]:
         """(W,) whether every robot of a world has arrived or stopped; False without robots."""
-        flags = (self.arrived | self.stopped | (self.state.takes_part ^ 1)).reshape(self.copies, self.objects)
-        ended = flags[:, self._robot_columns]
-        return np.asarray(ended.all(axis=1) & (ended.shape[1] > 0))
+        return self.state.all_done().view(bool)
 
     def reset(self, mask: NDArray[np.bool_] | None = None, *, next_scene: bool = False) -> None:
         """Return worlds to their initial state.

@@ -172,20 +172,30 @@ def _ways(data: dict[str, Any]) -> Any:
     return np.array(ways)
 
 
+SEES: dict[str, Any] = {"sensors": [{"name": "detector"}]}
+"""The sensor that `perceives: tracks` needs."""
 LED: dict[str, Any] = {
     "world": {"width": 20, "height": 20, "collision_mode": "contact", "fog_map": True},
     "robot": [
-        {"kinematics": {"name": "diff"}, "state": [2, 2, 0], "goal": [9, 2], "group": 0, "behavior": {"name": "dash"}},
+        {
+            "kinematics": {"name": "diff"},
+            "state": [2, 2, 0],
+            "goal": [9, 2],
+            "group": 0,
+            "behavior": {"name": "dash"},
+            **SEES,
+        },
         {
             "kinematics": {"name": "acker", "wheelbase": 1},
             "state": [2, 6, 0],
             "goal": [9, 6],
             "group": 1,
             "group_behavior": {"name": "orca"},
+            **SEES,
         },
-        {"kinematics": {"name": "omni"}, "state": [2, 9, 0], "goal": [9, 9], "group": 1},
+        {"kinematics": {"name": "omni"}, "state": [2, 9, 0], "goal": [9, 9], "group": 1, **SEES},
     ],
-    "obstacle": [{"state": [15, 15, 0], "shape": {"name": "circle", "radius": 0.5}}],
+    "obstacle": [{"state": [15, 15, 0], "shape": {"name": "circle", "radius": 0.5}, **SEES}],
 }
 OTHER: dict[str, Any] = {
     "number": 2,
@@ -212,6 +222,7 @@ OTHER: dict[str, Any] = {
     "actuation": {"lag": 0.2},
     "reflectivity": 0.1,
     "material": "glass",
+    "perceives": "tracks",
     "angle_range": [0, 6.283185307],
     "goal_threshold": 0.3,
     "arrive_mode": "state",

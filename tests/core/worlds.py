@@ -124,6 +124,8 @@ def robot(**overrides: Any) -> core.ObjectSpec:
         "reflectivity": 0.8,
         "material": "matt",
         "actuation": None,
+        "perceives_estimate": False,
+        "perceives_tracks": False,
         "target_roles": 0,
         "behavior": DASH,
         "grouped": False,

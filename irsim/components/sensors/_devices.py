@@ -59,7 +59,7 @@ class Device:
 
 
 def with_card(given: Any, cards: Mapping[str, Device]) -> Any:
-    """Return the keys of a sensor with those of the card that its ``device`` names; keys beside it win."""
+    """Return the keys of a sensor and of the card that its ``device`` names; keys beside it win."""
     name = given.get("device") if isinstance(given, Mapping) else None
     if not isinstance(name, str) or name not in cards:
         return given

@@ -24,6 +24,10 @@ class GaugeOptions(SensorOptions):
     report_units: ClassVar[tuple[str, ...]] = ()
     zone_keys: ClassVar[tuple[str, ...]] = ()
     """Keys that name zones of the world; the kernel has their numbers."""
+    locates: ClassVar[bool] = False
+    """Whether it tells where the robot itself is or how it moves, or where others are."""
+    table: ClassVar[str] = ""
+    """Key under which programs read rows of these numbers, of a sensor that reports several; empty: one row."""
 
     def numbers(self) -> tuple[tuple[str, str], ...]:
         """Name and unit of each of its numbers, in their order."""

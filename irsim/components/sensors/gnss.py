@@ -22,6 +22,7 @@ class Gnss(GaugeOptions):
     `quality` is 0 without reception (x and y are NaN), 1 alone, and with `rtk` 2 or 3, as corrections come and go.
     """
 
+    locates: ClassVar[bool] = True
     zone_keys: ClassVar[tuple[str, ...]] = ("blocked", "reflecting")
     reports: ClassVar[tuple[str, ...]] = ("x", "y", "quality", "std")
     report_units: ClassVar[tuple[str, ...]] = ("m", "m", "1", "m")

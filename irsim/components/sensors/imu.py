@@ -39,6 +39,7 @@ class Imu(GaugeOptions):
     drawn once per episode) and its wandering (`…_drift_std`) are two errors. Accelerations are means over two steps.
     """
 
+    locates: ClassVar[bool] = True
     reports: ClassVar[tuple[str, ...]] = ("yaw_rate", "ax", "ay")
     report_units: ClassVar[tuple[str, ...]] = ("rad/s", "m/s^2", "m/s^2")
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "imu", "device": "adis16448"}]}

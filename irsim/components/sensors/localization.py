@@ -19,6 +19,7 @@ class Localization(DriftOptions):
     between the pose drifts as odometry does. `jumps_per_km` adds gross errors, which fade in `time`.
     """
 
+    locates: ClassVar[bool] = True
     reports: ClassVar[tuple[str, ...]] = ("x", "y", "theta", "corrected")
     report_units: ClassVar[tuple[str, ...]] = ("m", "m", "rad", "1")
     schema_extra: ClassVar[dict[str, Any]] = {

@@ -22,6 +22,7 @@ class Odometry(DriftOptions):
     Feng 1996): unequal diameters and a wrong track. The sideways part of omnidirectional drives has the error of scale.
     """
 
+    locates: ClassVar[bool] = True
     reports: ClassVar[tuple[str, ...]] = ("x", "y", "theta", "vx", "vy", "yaw_rate", "left", "right")
     report_units: ClassVar[tuple[str, ...]] = ("m", "m", "rad", "m/s", "m/s", "rad/s", "ticks", "ticks")
     schema_extra: ClassVar[dict[str, Any]] = {

@@ -21,6 +21,7 @@ class Uwb(GaugeOptions):
     `unobstructed` counts as a wall, but for the robot itself.
     """
 
+    locates: ClassVar[bool] = True
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [{"name": "uwb", "anchors": [[0, 0], [10, 0], [5, 10]], "std": 0.05, "nlos_bias": 0.3}]
     }

@@ -47,6 +47,7 @@ void BoundState::expose() {
   touching = view<std::uint8_t>(state.touching.memory, {rows});
   given = view<std::uint8_t>(state.given.memory, {rows});
   arrived = view<std::uint8_t>(state.arrived.memory, {rows});
+  believes_arrived = view<std::uint8_t>(state.believes_arrived.memory, {rows});
   collided = view<std::uint8_t>(state.collided.memory, {rows});
   stopped = view<std::uint8_t>(state.stopped.memory, {rows});
   radius = view<double>(state.radius.memory, {rows});

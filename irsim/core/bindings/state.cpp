@@ -191,6 +191,7 @@ void bind_state(nb::module_& m) {
       .def_ro("touching", &S::touching)
       .def_ro("given", &S::given)
       .def_ro("arrived", &S::arrived)
+      .def_ro("believes_arrived", &S::believes_arrived)
       .def_ro("collided", &S::collided)
       .def_ro("stopped", &S::stopped)
       .def_ro("radius", &S::radius)
@@ -267,6 +268,13 @@ void bind_state(nb::module_& m) {
            [](S& self) {
              const Claim claim(self);
              refresh(*self.world, self.state);
+           })
+      .def("all_done",
+           [](const S& self) {
+             self.check_idle();
+             std::vector<std::uint8_t> flags;
+             for (int w = 0; w < self.state.worlds; ++w) flags.push_back(done(*self.world, self.state, w));
+             return own(std::move(flags), {static_cast<std::size_t>(self.state.worlds)});
            })
       .def(
           "done",

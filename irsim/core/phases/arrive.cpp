@@ -3,16 +3,17 @@
 
 #include "geometry/predicates.hpp"
 #include "phases.hpp"
+#include "surroundings/perception.hpp"
 #include "world/spec.hpp"
 
 namespace irsim {
 namespace {
 
-bool at_goal(const World& world, int object, const Pose& pose, const Goal& goal) {
+bool at_goal(const World& world, int object, const Pose& pose, const Goal& goal, double threshold) {
   const double dx = pose.x - goal.x, dy = pose.y - goal.y;
   const bool with_heading = world.state_arrival[object] && !std::isnan(goal.theta);
   const double turn = with_heading ? wrap(pose.theta - goal.theta) : 0.0;
-  return std::sqrt(dx * dx + dy * dy + turn * turn) < world.goal_threshold[object];
+  return std::sqrt(dx * dx + dy * dy + turn * turn) < threshold;
 }
 
 bool same_goal(const Goal& a, const Goal& b) {
@@ -55,6 +56,36 @@ bool overshoots(const World& world, const State& state, int row, int object, Vec
   return norm(from - at) >= threshold && norm(nearest_on_segment(from, to, at) - at) < threshold;
 }
 
+/// The arrival of an object that goes by an estimate: it goes on to its next goal, and rests, where it believes to be
+/// there; whether it has arrived is the truth.
+void arrive_in_belief(const World& world, State& state, int w, int object) {
+  const int row = w * world.objects + object;
+  const Goal& goal = state.goal[row];
+  const Pose& pose = state.pose[row];
+  std::uint8_t &arrived = state.arrived[row], &rests = state.believes_arrived[row];
+  const bool for_good =
+      world.after_arrival != kUnlatched && world.is_robot[object] && !world.wander[object] && !world.loop[object];
+  constexpr double kStanding = 1e-3;  // slower objects stand [m/s]
+  const double judged = world.specs[object].goal_threshold;
+  const bool stands = std::hypot(state.twist[row][0], state.twist[row][1]) < kStanding;
+  const bool believed =
+      at_goal(world, object, believed_pose(world, state, row), goal, stands ? judged : world.goal_threshold[object]);
+  if (state.goals[row].left() > 1) {
+    arrived = 0;
+    if (!believed) return;
+    ++state.goals[row].head;
+    state.sync_goal(row);
+    return state.log(world, w, EventKind::waypoint, object, -1, pose.position());
+  }
+  const bool endless = world.wander[object] || world.loop[object];
+  const bool there = endless ? believed : at_goal(world, object, pose, goal, judged);
+  if (believed && !rests && !endless) state.log(world, w, EventKind::believed_arrival, object, -1, pose.position());
+  if (there && !arrived) state.log(world, w, EventKind::arrival, object, -1, pose.position());
+  rests = believed || (rests && for_good);
+  arrived = there || (arrived && for_good);
+  if (rests && for_good && world.after_arrival == kFreeze) state.stopped[row] = 1;
+}
+
 }  // namespace
 
 void arrive(const World& world, State& state, int w) {
@@ -71,12 +102,16 @@ void arrive(const World& world, State& state, int w) {
       state.arrived[row] = 0;
       continue;
     }
+    if (estimates(world, i)) {
+      arrive_in_belief(world, state, w, i);
+      continue;
+    }
     const Pose& pose = state.pose[row];
     if (state.arrived[row] && is_settled(world, state, row, i)) {
       if (world.after_arrival == kFreeze) state.stopped[row] = 1;
       continue;
     }
-    if (!at_goal(world, i, pose, state.goal[row])) {
+    if (!at_goal(world, i, pose, state.goal[row], world.goal_threshold[i])) {
       if (!state.arrived[row] && overshoots(world, state, row, i, from)) {
         state.log(world, w, EventKind::overshoot, i, -1, pose.position());
         state.overshot[row] = 1;

@@ -47,6 +47,17 @@ void run_behavior(const World& world, State& state, int w, const BehaviorGroup& 
   }
 }
 
+/// Let the behavior of `group` decide for each of its objects that does not know the truth.
+void run_believers(const World& world, State& state, int w, const BehaviorGroup& group, Workspace& work) {
+  const int first = w * world.objects;
+  for (const int i : group.objects) {
+    if (!believes(world, i) || is_idle(world, state, first, i) || state.given[first + i]) continue;
+    const Belief belief(world, state, w, i, work, work.replaced);
+    work.objects.assign(1, i);
+    run_behavior(world, state, w, group, work);
+  }
+}
+
 }  // namespace
 
 void renew_goals(const World& world, State& state, int w, int object) {
@@ -64,9 +75,12 @@ void renew_goals(const World& world, State& state, int w, int object) {
 }
 
 void command_velocity(const World& world, State& state, int w, int object, Vec2 velocity, const Turning& turning) {
-  Vec3& command = state.command[w * world.objects + object];
-  command = control_for(world, state, w, object, velocity, turning);
-  if (world.state_arrival[object]) face_goal(world, state, w * world.objects + object, object, command);
+  const int row = w * world.objects + object;
+  Vec3& command = state.command[row];
+  // An object that goes by an estimate means a direction as it believes to be turned.
+  const double turn = estimates(world, object) ? state.pose[row].theta - believed_pose(world, state, row).theta : 0.0;
+  command = control_for(world, state, w, object, turn == 0.0 ? velocity : rotate(velocity, unit(turn)), turning);
+  if (world.state_arrival[object]) face_goal(world, state, row, object, command);
 }
 
 Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& wanted) {
@@ -83,7 +97,7 @@ Vec3 control_for(const World& world, const State& state, int w, int object, Vec2
 
 void decide(const World& world, State& state, int w, Workspace& work) {
   const int first = w * world.objects;
-  work.neighbors.known = work.orca.known = work.stops.known = work.walls.known = false;
+  work.forget_step();
   for (const int i : world.moving) {
     const int row = first + i;
     if (state.stopped[row]) continue;
@@ -94,19 +108,21 @@ void decide(const World& world, State& state, int w, Workspace& work) {
   for (const BehaviorGroup& group : world.behaviors) {
     work.objects.clear();
     for (const int i : group.objects) {
-      if (!is_idle(world, state, first, i) && !state.given[first + i]) work.objects.push_back(i);
+      if (!is_idle(world, state, first, i) && !state.given[first + i] && !believes(world, i)) work.objects.push_back(i);
     }
     if (!work.objects.empty()) run_behavior(world, state, w, group, work);
+    if (!world.perception.empty()) run_believers(world, state, w, group, work);
   }
   keep_routes(world, state, w, work);
 }
 
 void decide(const World& world, State& state, int w, Workspace& work, int object) {
-  work.neighbors.known = work.orca.known = work.stops.known = work.walls.known = false;
+  work.forget_step();
   state.command[w * world.objects + object] = {};
   find_routes(world, state, w, work, object);
   for (const BehaviorGroup& group : world.behaviors) {
     if (std::find(group.objects.begin(), group.objects.end(), object) == group.objects.end()) continue;
+    const Belief belief(world, state, w, object, work, work.replaced);
     work.objects.assign(1, object);
     run_behavior(world, state, w, group, work);
   }

@@ -36,7 +36,7 @@ void scan(const World& world, State& state, int w, const Scan& sensor, const Pos
 }
 
 void update_object_velocities(const World& world, const State& state, int w, Workspace& work) {
-  if (world.velocities_per_world == 0) return;
+  if (world.velocities_per_world == 0 && !world.detects) return;
   work.velocities.resize(world.objects);
   for (int i = 0; i < world.objects; ++i) {
     work.velocities[i] = velocity_world(world, state, w * world.objects + i, work.extra);

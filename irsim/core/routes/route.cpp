@@ -134,6 +134,7 @@ void find_routes(const World& world, State& state, int w, Workspace& work, int o
   const auto for_each = [&](auto&& act) {
     for (const int i : world.routed) {
       if ((only >= 0 && only != i) || !follows_route(world, state, w, i)) continue;
+      const Belief belief(world, state, w, i, work, work.replaced);
       Follower follower(world, state, w, i, work);
       act(follower);
     }
@@ -146,8 +147,9 @@ void find_routes(const World& world, State& state, int w, Workspace& work, int o
 void keep_routes(const World& world, State& state, int w, Workspace& work, int only) {
   if (!world.routed.empty()) work.stop_hulls.clear(world.objects);
   for (const int i : world.routed) {
-    if ((only < 0 || only == i) && follows_route(world, state, w, i))
-      Follower(world, state, w, i, work).adjust_command();
+    if ((only >= 0 && only != i) || !follows_route(world, state, w, i)) continue;
+    const Belief belief(world, state, w, i, work, work.replaced);
+    Follower(world, state, w, i, work).adjust_command();
   }
 }
 

@@ -63,7 +63,8 @@ void Log::add(const State& state) {
   }
   add_if_changed(goal_rows, goal, rows, state.goal.data, objects);
   for (int i = 0; i < objects; ++i) {
-    flags_now_[i] = (state.arrived[i] ? 1 : 0) | (state.collided[i] ? 2 : 0) | (state.stopped[i] ? 4 : 0);
+    flags_now_[i] = (state.arrived[i] ? 1 : 0) | (state.collided[i] ? 2 : 0) | (state.stopped[i] ? 4 : 0) |
+                    (state.believes_arrived[i] ? 8 : 0);
   }
   add_if_changed(flag_rows, flags, rows, flags_now_.data(), objects);
   if (beams > 0) add_scan(state);

@@ -2,6 +2,7 @@
 
 #include "geometry/sector.hpp"
 #include "phases.hpp"
+#include "sensing.hpp"
 #include "sensing/raycast.hpp"
 #include "world/workspace.hpp"
 
@@ -230,6 +231,41 @@ std::vector<int> in_view(const World& world, State& state, int w, const View& vi
     if (sees(world, state, w, view, i, work)) seen.push_back(i);
   }
   return seen;
+}
+
+double visible_share(const Sensing& s, Vec2 eye, int target) {
+  constexpr int kBeams = 21;
+  const auto [centre, radius] = s.bounds(target);
+  const double distance = norm(centre - eye);
+  if (distance <= radius) return 1.0;
+  const double half = std::asin(radius / distance);
+  static thread_local std::vector<double> bearings;
+  bearings.clear();
+  for (int k = 0; k <= kBeams; ++k) bearings.push_back(half * (2.0 * k / kBeams - 1.0));
+  const Mount mount = beams_between(bearings);
+  const Vec2 axis = (centre - eye) * (1.0 / distance);
+  const double reach = distance + radius;
+  Fan seen(s.buffers, eye, axis, mount, reach), before(s.spare, eye, axis, mount, reach);
+  for (int k = 0; k < mount.count; ++k) {
+    const Vec2 beam = rotate(unit(mount.angle[k]), axis);
+    seen.aim(k, beam), before.aim(k, beam);
+  }
+  const auto footprint = [&](int i) { return s.footprint(i); };
+  seen.consider(target, centre, radius);
+  seen.cast(footprint);
+  for (const int i : s.world.visible) {
+    if (i == s.mount.object || i == target) continue;
+    const auto [other, size] = s.bounds(i);
+    before.consider(i, other, size);
+  }
+  before.cast(footprint);
+  int whole = 0, open = 0;
+  for (int k = 2; k < mount.count; ++k) {
+    if (seen.hit(k) < 0) continue;
+    ++whole;
+    open += !(before.hit(k) >= 0 && before.range(k) < seen.range(k) * (1.0 - 1e-12));
+  }
+  return whole > 0 ? static_cast<double>(open) / whole : 0.0;
 }
 
 }  // namespace irsim

@@ -7,6 +7,7 @@
 
 namespace irsim {
 
+struct Sensing;
 struct State;
 struct Workspace;
 struct World;
@@ -29,5 +30,7 @@ struct View {
 bool sees(const World& world, const State& state, int w, const View& view, int target, Workspace& work);
 /// Indices, ascending, of the objects of world w that are partly or wholly in a view at the present poses.
 std::vector<int> in_view(const World& world, State& state, int w, const View& view, Workspace& work);
+/// Share of the outline of an object that a sensor sees from `eye`: of the beams that would hit it alone.
+double visible_share(const Sensing& sensing, Vec2 eye, int target);
 
 }  // namespace irsim

@@ -19,7 +19,7 @@ inline int readings(const SonarOptions&) { return kConeReadings; }
 inline void sonar(const SonarOptions& o, const Sensing& s) {
   const auto luck = s.draws(1).uniforms(s.scan_number());
   double range = measured(o, s, nearest_echo(o, s, false), luck[0]);
-  // The sound of others comes at any time; the first sound that arrives counts.
+  // Foreign sound comes at any time; the first sound that arrives counts.
   if (luck[1] < o.crosstalk) range = std::min(range, o.range_min + luck[2] * (o.range_max - o.range_min));
   report(o, s, range);
 }

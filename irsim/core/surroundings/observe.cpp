@@ -1,5 +1,7 @@
 #include "surroundings/observe.hpp"
 
+#include <algorithm>
+
 #include "collision/support.hpp"
 #include "world/state.hpp"
 #include "world/world.hpp"
@@ -13,18 +15,38 @@ Neighbor Observer::neighbor(int row, const BoundingCircle& circle) const {
           robot};
 }
 
-void Observer::measure_extents(int row, Vec2 place, int other, Neighbor& neighbor) const {
-  const Vec2 away = neighbor.position - place;
+void Observer::find_believed(int row, Near& near) const {
+  const int w = row / world_.objects, object = row % world_.objects;
+  near.world = -1;
+  bounding_circles(world_, state_, w, near.circles);
+  const Shapes& shapes = *state_.scenes[w].shapes;
+  for (std::size_t m = 0; m < world_.moving.size(); ++m) {
+    const int i = world_.moving[m];
+    const Sighting& sighting = near.beliefs.movers[m];
+    const Pose& pose = i == object ? near.beliefs.pose : sighting.pose;
+    const bool present = i == object || sighting.present;
+    near.circles[i].centre =
+        present ? pose.position() + rotate(shapes.centre[i], unit(pose.theta)) : Vec2{kNone, kNone};
+  }
+  nearest_objects(world_, state_, near.circles, row, looking_.neighbors, looking_.reach, looking_.statics,
+                  near.nearest);
+}
+
+void Observer::measure_extents(int row, int other, Neighbor& neighbor) const {
+  const int w = row / world_.objects, other_row = row - row % world_.objects + other;
+  const Vec2 place = state_.pose[row].position(), offset = state_.scenes[w].shapes->centre[other];
+  const Vec2 there = state_.pose[other_row].position() + rotate(offset, state_.heading(other_row));
+  const Vec2 away = there - place;
   const double distance = norm(away);
   const Vec2 direction = distance > 0.0 ? away * (1.0 / distance) : Vec2{1.0, 0.0};
-  const int w = row / world_.objects;
   neighbor.own_extent = reach_from(state_.footprint(world_, w, row % world_.objects), place, direction);
-  neighbor.extent = reach_from(state_.footprint(world_, w, other), neighbor.position, direction * -1.0);
+  neighbor.extent = reach_from(state_.footprint(world_, w, other), there, direction * -1.0);
 }
 
 Seen Observer::see(int row, Near& near) const {
   const int w = row / world_.objects, object = row % world_.objects;
   const Vec3& twist = state_.twist[row];
+  const bool believing = believes(world_, object);
   Seen seen;
   seen.pose = state_.pose[row];
   seen.ahead = state_.heading(row);
@@ -37,16 +59,35 @@ Seen Observer::see(int row, Near& near) const {
   seen.goal = state_.goal[row];
   seen.goal_threshold = world_.goal_threshold[object];
   seen.radius = state_.radius[row];
-  seen.arrived = state_.arrived[row] ? 1.0 : 0.0;
+  seen.arrived = (estimates(world_, object) ? state_.believes_arrived : state_.arrived)[row] ? 1.0 : 0.0;
+  if (believing) {
+    near.beliefs.velocities.clear();
+    for (const int i : world_.moving) {
+      const Vec3& other = state_.twist[row - object + i];
+      near.beliefs.velocities.push_back({other[0], other[1]});
+    }
+    believe(world_, state_, row, near.beliefs);
+    seen.pose = near.beliefs.pose, seen.ahead = unit(seen.pose.theta);
+    seen.velocity = rotate(seen.velocity, near.beliefs.turn);
+  }
   near.neighbors.clear();
   if (looking_.neighbors > 0) {
-    if (near.world != w) bounding_circles(world_, state_, w, near.circles);
-    near.world = w;
-    nearest_objects(world_, state_, near.circles, row, looking_.neighbors, looking_.reach, looking_.statics,
-                    near.nearest);
+    if (believing) {
+      find_believed(row, near);
+    } else {
+      if (near.world != w) bounding_circles(world_, state_, w, near.circles);
+      near.world = w;
+      nearest_objects(world_, state_, near.circles, row, looking_.neighbors, looking_.reach, looking_.statics,
+                      near.nearest);
+    }
     for (const int i : near.nearest.object) {
       near.neighbors.push_back(neighbor(w * world_.objects + i, near.circles[i]));
-      if (looking_.extents) measure_extents(row, seen.pose.position(), i, near.neighbors.back());
+      Neighbor& other = near.neighbors.back();
+      if (looking_.extents) measure_extents(row, i, other);
+      if (!believing || world_.is_static[i]) continue;
+      const auto found = std::lower_bound(world_.moving.begin(), world_.moving.end(), i);
+      const Sighting& sighting = near.beliefs.movers[static_cast<std::size_t>(found - world_.moving.begin())];
+      other.heading = sighting.pose.theta, other.ahead = unit(other.heading), other.velocity = sighting.velocity;
     }
   }
   seen.neighbors = near.neighbors.data(), seen.neighbor_count = near.neighbors.size();

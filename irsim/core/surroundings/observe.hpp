@@ -7,6 +7,7 @@
 
 #include "observing.hpp"
 #include "surroundings/bounding_circles.hpp"
+#include "surroundings/perception.hpp"
 
 namespace irsim {
 
@@ -29,6 +30,7 @@ struct Near {
   std::vector<BoundingCircle> circles;
   NearestRows nearest;
   std::vector<Neighbor> neighbors;
+  Beliefs beliefs;  // of the row, if it does not know the truth
 };
 
 /// Looks at rows of a state, which stays as it is meanwhile.
@@ -41,8 +43,10 @@ class Observer {
   Seen see(int row, Near& near) const;
 
  private:
+  /// Find the nearest objects as the object of a row believes them to be.
+  void find_believed(int row, Near& near) const;
   Neighbor neighbor(int row, const BoundingCircle& circle) const;
-  void measure_extents(int row, Vec2 place, int other, Neighbor& neighbor) const;
+  void measure_extents(int row, int other, Neighbor& neighbor) const;
 
   const World& world_;
   const State& state_;

@@ -49,6 +49,7 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   std::copy_n(&from.initial_extra[old_e], both, &to.initial_extra[e]);
   to.sync_goal(row);
   to.overshot[row] = from.overshot[old_row];
+  to.believes_arrived[row] = from.believes_arrived[old_row];
 }
 
 /// Copy what the actuators of a row keep, and the commands that wait in their queue.

@@ -71,12 +71,13 @@ enum class EventKind {
   sight_start,
   sight_end,
   contact_between_steps,  // of two objects that are apart at both ends of the step
-  passed_through          // likewise, and the middle of one went through the other
+  passed_through,         // likewise, and the middle of one went through the other
+  believed_arrival        // an object that goes by an estimate rests where it takes its last goal to be
 };
-constexpr const char* kEventNames[] = {"arrival",          "waypoint",    "collision", "no_path",
-                                       "overshoot",        "zone_entry",  "zone_exit", "crossing_to_right",
-                                       "crossing_to_left", "sight_start", "sight_end", "contact_between_steps",
-                                       "passed_through"};
+constexpr const char* kEventNames[] = {"arrival",          "waypoint",        "collision", "no_path",
+                                       "overshoot",        "zone_entry",      "zone_exit", "crossing_to_right",
+                                       "crossing_to_left", "sight_start",     "sight_end", "contact_between_steps",
+                                       "passed_through",   "believed_arrival"};
 
 struct Event {
   EventKind kind;

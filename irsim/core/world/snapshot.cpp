@@ -99,7 +99,8 @@ struct Walk {
   void state(State& s) {
     for (const int number : {s.worlds, s.objects, s.extra_rows, static_cast<int>(s.keep_history)}) expect(number);
     all(s.pose, s.extra, s.control, s.twist, s.command, s.commanded, s.drive, s.contact_time, s.air_time, s.given);
-    all(s.arrived, s.collided, s.stopped, s.touching, s.radius, s.vel_min, s.vel_max, s.acce, s.pace, s.start_step);
+    all(s.arrived, s.believes_arrived, s.collided, s.stopped, s.touching, s.radius, s.vel_min, s.vel_max, s.acce,
+        s.pace, s.start_step);
     all(s.appeared, s.takes_part, s.size_scale, s.speed_scale, s.acceleration_scale, s.noise_scale, s.latency);
     all(s.infeasible, s.between_steps, s.goal, s.ranges, s.beam_angles, s.hits, s.valid, s.velocities, s.explored);
     all(s.count, s.scene_index, s.noise, s.level, s.variant, s.seed, s.failed_placement);

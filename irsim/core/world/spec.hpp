@@ -49,6 +49,8 @@ struct ObjectSpec {
   double reflectivity;                               // share of the light of a lidar that its surface throws back
   Material material;
   std::optional<Actuation> actuation;  // without it commands reach the drive as they are
+  bool perceives_estimate;             // whether it decides from its estimated pose
+  bool perceives_tracks;               // whether it decides from the tracks of its detector
 
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
@@ -67,7 +69,8 @@ struct ObjectSpec {
         field("tau", &S::tau), field("driven", &S::driven), field("start_step", &S::start_step),
         field("appear_step", &S::appear_step), field("vanish_step", &S::vanish_step),
         field("reflectivity", &S::reflectivity), choice("material", &S::material, "matt", "glass", "mirror"),
-        field("actuation", &S::actuation));
+        field("actuation", &S::actuation), field("perceives_estimate", &S::perceives_estimate),
+        field("perceives_tracks", &S::perceives_tracks));
   }
 };
 

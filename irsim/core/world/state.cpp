@@ -82,6 +82,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       air_time(rows),
       given(rows),
       arrived(rows),
+      believes_arrived(rows),
       collided(rows),
       stopped(rows),
       touching(rows),
@@ -194,6 +195,7 @@ void restart_row(const World& world, State& state, int row) {
   state.contact_time[row] = state.air_time[row] = 0.0;
   state.touching[row] = 0;
   state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;
+  state.believes_arrived[row] = 0;
   state.radius[row] = state.scenes[w].shapes->radius[i];
   state.infeasible[row] = state.between_steps[row] = 0;
   state.goal_draws[row] = 0;

@@ -55,7 +55,8 @@ struct State {
   Array<Actuated> actuated;              // (R,), empty if no object has actuators
   Array<double> contact_time, air_time;  // time for which an object has touched something, or nothing [s]
   Array<std::uint8_t> given, arrived, collided, stopped;
-  Array<std::uint8_t> touching;  // bit 0: in contact in the last step, bit 1: in the one before
+  Array<std::uint8_t> believes_arrived;  // of rows that go by an estimate: whether they rest at what they take for it
+  Array<std::uint8_t> touching;          // bit 0: in contact in the last step, bit 1: in the one before
   Array<double> radius;
   Array<Vec3> vel_min, vel_max;    // limits of the controls in this scene
   Array<Vec3> acce;                // limits of their changes [per s]
@@ -144,7 +145,7 @@ struct State {
   void sync_goal(int row) {
     const GoalQueue& q = goals[row];
     goal[row] = q.empty() ? Goal{kNone, kNone, kNone} : q.goals[q.head];
-    overshot[row] = 0;
+    overshot[row] = 0, believes_arrived[row] = 0;
   }
 };
 

@@ -15,6 +15,7 @@
 #include "sfm/social_force.hpp"
 #include "surroundings/closing.hpp"
 #include "surroundings/neighbors.hpp"
+#include "surroundings/perception.hpp"
 #include "surroundings/walls.hpp"
 
 namespace irsim {
@@ -60,6 +61,10 @@ struct Workspace {
   std::vector<Side> sides;        // lines that an object on a route must not cross
   StopHulls stop_hulls;           // of the objects near one on a route
   Stops stops;
+  Replaced replaced;  // by what an object believes
+
+  /// Forget what was computed from the present state, which changes.
+  void forget_step() { neighbors.known = orca.known = stops.known = walls.known = false; }
 };
 
 }  // namespace irsim

@@ -128,6 +128,7 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
     world.readings_per_world += mount.readings, world.memory_per_world += mount.memory;
     if (mount.readings > 0) {  // its rays are not reported, so they have no place among the beams of the world
       world.gauges.push_back({spec.sensors[k], mount, {}});
+      world.detects = world.detects || std::holds_alternative<DetectorOptions>(spec.sensors[k]);
       continue;
     }
     world.beams_per_world += mount.count;
@@ -262,7 +263,7 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     acce.push_back(padded(s.acce));
     angle_low.push_back(s.angle_range[0]);
     angle_high.push_back(s.angle_range[1]);
-    goal_threshold.push_back(s.goal_threshold);
+    goal_threshold.push_back(s.perceives_estimate ? 0.5 * s.goal_threshold : s.goal_threshold);
     range_low.push_back(pose_of(s.range_low));
     range_high.push_back(pose_of(s.range_high));
     extra_rows = std::max(extra_rows, static_cast<int>(s.extra.size()));
@@ -285,6 +286,10 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     for (int i = 0; i < objects; ++i)
       actuators.push_back(has_actuators[i] ? make_actuators(specs[i], step_time) : Actuators{});
     lay_out_queues(*this);
+  }
+  if (std::any_of(specs.begin(), specs.end(),
+                  [](const ObjectSpec& s) { return s.perceives_estimate || s.perceives_tracks; })) {
+    for (int i = 0; i < objects; ++i) perception.push_back(perception_of(*this, i, specs[i]));
   }
   find_members(*this);
   if (fog) add_fog_beams(*this);

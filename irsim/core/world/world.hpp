@@ -12,6 +12,7 @@
 #include "drives.hpp"
 #include "geometry/vec.hpp"
 #include "sensing/fog.hpp"
+#include "surroundings/perception.hpp"
 #include "world/actuation.hpp"
 #include "world/scene.hpp"
 #include "world/variation.hpp"
@@ -97,7 +98,10 @@ struct World {
   std::vector<std::uint8_t> has_actuators;
   std::vector<Actuators> actuators;  // empty if no object has any
   std::vector<Vec3> vel_min, vel_max, acce;
-  std::vector<double> angle_low, angle_high, goal_threshold;
+  std::vector<double> angle_low, angle_high;
+  // Distance from the goal at which an object rests. One that goes by an estimate is judged by twice as much: what its
+  // specification says.
+  std::vector<double> goal_threshold;
   std::vector<Pose> range_low, range_high;
   std::vector<double> reflectivity;
   std::vector<Material> material;
@@ -111,8 +115,10 @@ struct World {
   std::vector<int> latecomers;                              // objects that appear after the start
   std::vector<int> leavers;                                 // objects that leave the world before the end
   std::vector<BehaviorGroup> behaviors;
-  std::vector<Scan> scans;   // sensors with beams
-  std::vector<Scan> gauges;  // sensors that report numbers instead
+  std::vector<Scan> scans;             // sensors with beams
+  std::vector<Scan> gauges;            // sensors that report numbers instead
+  bool detects = false;                // whether one of them is a detector
+  std::vector<Perception> perception;  // (N,) what objects go by; empty if all of them know the truth
   int beams_per_world = 0, velocities_per_world = 0, readings_per_world = 0, memory_per_world = 0;
   std::size_t queue_slots = 0;  // commands that wait for their dead time, of all objects of a world
   std::optional<Fog> fog;

@@ -90,6 +90,12 @@ DRIVES: dict[str, Code] = {
         "contact'), are the same thing: a first-order lag of the drive. Keep one of them; 'tau: 0' in the kinematics "
         "takes an object out of 'world.drive_tau'.",
     ),
+    "perceives-without-sensor": Code(
+        "a robot that lacks the sensor it decides from",
+        "'perceives: estimate' decides from the pose that 'localization', or else 'odometry', reports, 'perceives: "
+        "tracks' from the tracks of a 'detector', and 'both' from the two. Example: perceives: estimate, with sensors: "
+        "[{name: lidar2d}]; add {name: localization}.",
+    ),
     "coarse-steps": Code(
         "steps that are long for the size of a body",
         "A body that moves by more than half of its smallest extent in a step, or turns by more than 0.5 rad (its rim "

@@ -1,4 +1,4 @@
-"""What the colour of an object is in a picture, and where its dart points: one rule for pictures and for pages."""
+"""The colour of an object in a picture, and the direction of its dart: one rule for pictures and for pages."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def distinct_colors(objects: Sequence[ObjectView]) -> dict[int, Any]:
     """The colour of each object of a world by its id; two to six robots whose colours were not chosen get one each.
 
     Args:
-        objects: All objects of the world, also those that come later or have left, so that no colour changes in a run.
+        objects: All objects of the world, also later and earlier ones, so that no colour changes in a run.
     """
     colors = {view.id: _own_color(view) for view in objects}
     robots = [view for view in objects if view.role == "robot"]

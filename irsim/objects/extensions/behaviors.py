@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+import irsim._core as core
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import BehaviorError, ScenarioError
 from irsim.objects.surroundings import Surroundings
@@ -139,7 +141,8 @@ class PythonBehaviors:
         act = self._instances.get((view.world, view.id, "behavior")) or CUSTOM_BEHAVIORS.function(view.kinematics, name)
         if act is None:
             raise _unknown(self._simulation, view, name)
-        return call(act, view, Surroundings(view).others, view.record.target_roles, _keys_as_given(options))
+        with _belief_of(view):
+            return call(act, view, Surroundings(view).others, view.record.target_roles, _keys_as_given(options))
 
     def _decide_group(self, world: int, members: list[SimObject]) -> None:
         leader, simulation = members[0], self._simulation
@@ -172,6 +175,13 @@ def call(act: Any, ego_object: Any, others: Iterable[Any], roles: str, keys: Map
     """Return the control that a behavior chooses for an object that sees the others with a role, or ``all``."""
     seen = [other for other in others if roles in ("all", other.role)]
     return act(ego_object=ego_object, external_objects=seen, **keys)
+
+
+def _belief_of(view: SimObject) -> AbstractContextManager[None]:
+    """The context in which user code sees what an object believes instead of the truth."""
+    if view.record.perceives == "truth":
+        return nullcontext()
+    return core.Belief(view._simulation.world, view._simulation.state, view.row)
 
 
 def _name(options: Any) -> str:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from irsim.common.arrays import Floats
 
 if TYPE_CHECKING:
@@ -33,6 +35,7 @@ class Gauge:
         self.sensor_type = str(options.name)
         numbers: tuple[tuple[str, str], ...] = options.numbers()
         self.names, self.units = tuple(name for name, _ in numbers), tuple(unit for _, unit in numbers)
+        self._table: str = options.table
         self.attach(simulation, index)
 
     def attach(self, simulation: Simulation, index: int) -> None:
@@ -44,12 +47,19 @@ class Gauge:
 
     @property
     def data(self) -> Floats:
-        """Copy of the numbers of the last step, (len(names),)."""
+        """Copy of the numbers of the last step, (len(names),) or rows of them one after the other."""
         return self._numbers.copy()
 
-    def read(self) -> dict[str, float]:
-        """Return the numbers of the last step by name."""
-        return dict(zip(self.names, self._numbers.tolist(), strict=True))
+    def read(self) -> dict[str, Any]:
+        """Return the numbers of the last step by name; a sensor that reports rows of them has a list of rows.
+
+        A detector has ``{"tracks": [{"id": 0.0, "x": 2.1, ...}, ...]}``, without rows that are empty.
+        """
+        if not self._table:
+            return dict(zip(self.names, self._numbers.tolist(), strict=True))
+        rows = self._numbers.reshape(-1, len(self.names))
+        kept = rows[np.isfinite(rows[:, 0])]
+        return {self._table: [dict(zip(self.names, row, strict=True)) for row in kept.tolist()]}
 
     def step(self, state: Any = None) -> None:
         """Do nothing: there is one reading in each step.
@@ -59,5 +69,8 @@ class Gauge:
         """
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{name} {value:.4g}" for name, value in self.read().items())
+        told = ", ".join(
+            f"{name} {value:.4g}" if isinstance(value, float) else f"{len(value)} {name}"
+            for name, value in self.read().items()
+        )
         return f"<sensor {self.sensor_type!r} of {self.parent.name!r}: {told}>"

@@ -71,6 +71,11 @@ class Body:
         return moved_by.get("name") == "replay"
 
     @property
+    def estimates(self) -> bool:
+        """Whether it decides from an estimate of its pose, so that it passes waypoints where it believes them to be."""
+        return self.options.perceives in ("estimate", "both")
+
+    @property
     def endless(self) -> bool:
         """Whether it has no last goal."""
         return self.options.loop or self.options.wander
@@ -90,6 +95,7 @@ class Artifact:
         control: (T, N, 3) executed controls, in single precision.
         goal: (T, N, 3) present goals; NaN without one.
         arrived, collided, stopped: (T, N) flags.
+        at_rest: (T, N) whether it has stopped or arrived; of one that goes by an estimate, whether it believes so.
         events: The events, in order.
         result: Facts of ``result.json``, None if the run has not ended.
         cells: Occupied cells of the map, its corner and the extent of a cell; None without a map.
@@ -106,6 +112,7 @@ class Artifact:
     arrived: NDArray[np.bool_]
     collided: NDArray[np.bool_]
     stopped: NDArray[np.bool_]
+    at_rest: NDArray[np.bool_]
     events: Sequence[EventFacts]
     result: ResultFacts | None
     cells: tuple[NDArray[np.bool_], Floats, Floats] | None
@@ -176,6 +183,7 @@ def read_artifact(run: str | Path) -> Artifact:
         arrived=(flags & 1) != 0,
         collided=(flags & 2) != 0,
         stopped=(flags & 4) != 0,
+        at_rest=(flags & (4 | np.where([body.estimates for body in bodies], 8, 1))) != 0,
         events=_events(folder, pieces),
         result=_result(folder),
         cells=_cells(folder, meta),

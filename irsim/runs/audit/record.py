@@ -71,6 +71,7 @@ class Options(BaseModel):
     loop: bool = False
     wheelbase: float | None = None
     actuation: ActuationFacts | None = None
+    perceives: Literal["truth", "estimate", "tracks", "both"] = "truth"
     vel_dim: Annotated[int, Field(ge=0, le=3)] = 2
     appear_time: float = 0.0
     vanish_time: float | None = None

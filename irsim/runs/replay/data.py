@@ -43,6 +43,7 @@ _RANKS = {
     "no_path": 1,
     "overshoot": 2,
     "arrival": 3,
+    "believed_arrival": 3,
     "line_crossing": 4,
     "zone_entry": 4,
     "zone_exit": 4,

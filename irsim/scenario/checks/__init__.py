@@ -36,7 +36,7 @@ KEY_CODES = frozenset({"unknown-key", "duplicate-key"})
 _FAMILIES = (
     "world", "magnitude", "names", "zones", "kinematics", "actuation", "shapes", "goals", "outside_world", "bridges",
     "placement", "overlap", "behaviors", "regions", "groups", "motion", "tunneling", "step_size", "symmetry", "braking",
-    "sensors", "units", "files", "unsupported",
+    "sensors", "perception", "units", "files", "unsupported",
 )  # fmt: skip
 """Modules of this package, in the order of their findings."""
 

@@ -75,6 +75,7 @@ class Entry(Options):
         "acceleration": "acce",
         "actuator": "actuation",
         "actuators": "actuation",
+        "perception": "perceives",
         "tolerance": "goal_threshold",
         "goal_tolerance": "goal_threshold",
         "xy_goal_tolerance": "goal_threshold",
@@ -158,6 +159,11 @@ class Entry(Options):
     """The way of commands to the drive that executes them, in this order: `command_period`, `delay`, `resolution`,
     limits with `jerk`, `lag`, `dead_band`, `noise`. Null executes them at once, within `vel_min`, `vel_max` and `acce`.
     """
+    perceives: Annotated[Any, PerObject(Literal["truth", "estimate", "tracks", "both"])] = "truth"
+    """The knowledge from which behaviors and policies decide. `estimate`: the pose that the object's `localization`
+    reports, or else its `odometry`; goals, routes, zones and what stands are where its map has them, and it rests
+    within half of `goal_threshold` of where it believes its goal to be. `tracks`: the tracks of its `detector` instead
+    of the other moving objects. `both`: these two. Outcomes, collisions and rewards stay true."""
     angle_range: Annotated[Any, PerObject(Range | None, "vector")] = None
     """Interval of the heading, one turn wide; null is [-π, π]."""
     goal_threshold: Annotated[Meters, Field(ge=0)] = 0.1

@@ -243,6 +243,7 @@ class _Maker:
             restitution=self.world.restitution if value["restitution"] is None else value["restitution"],
             drive_tau=self._tau(kinematics),
             actuation=value["actuation"],
+            perceives=value["perceives"],
             tags=tuple(value["tags"]),
             watches=entry.fov is not None,
             start_time=value["start_time"],
@@ -306,7 +307,7 @@ DEFAULT_REFLECTIVITY = 0.8
 SPREAD_KEYS = (
     "name", "tags", "state", "goal", "waypoints", "start_time", "appear_time", "velocity", "kinematics", "shape",
     "behavior", "group_behavior", "sensors", "plot", "color", "description", "vel_min", "vel_max", "acce", "actuation",
-    "angle_range", "arrive_mode", "group_name", "mass", "friction", "inertia", "restitution",
+    "perceives", "angle_range", "arrive_mode", "group_name", "mass", "friction", "inertia", "restitution",
 )  # fmt: skip
 """Keys of an entry that may hold a list with one value per object."""
 

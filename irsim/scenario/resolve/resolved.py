@@ -106,6 +106,7 @@ class ObjectRecord:
     restitution: float
     drive_tau: float  # effective: kinematics first, then world
     actuation: Actuation | None = None
+    perceives: Literal["truth", "estimate", "tracks", "both"] = "truth"
     tags: tuple[str, ...] = ()
     watches: bool = False  # whether `fov` is written; else the field of view is its lidar's
     joined: bool = True  # whether it follows the behavior of its group
@@ -115,6 +116,16 @@ class ObjectRecord:
     reflectivity: float = 0.8  # share of the light of lidars that its surface throws back
     material: Literal["matt", "glass", "mirror"] = "matt"
     spreads: Spreads | None = None  # None: it starts as written
+
+    @property
+    def estimates(self) -> bool:
+        """Whether it decides from an estimate of its pose."""
+        return self.perceives in ("estimate", "both")
+
+    @property
+    def follows_tracks(self) -> bool:
+        """Whether it decides from the tracks of its detector."""
+        return self.perceives in ("tracks", "both")
 
     @property
     def is_map(self) -> bool:

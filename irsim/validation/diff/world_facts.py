@@ -30,7 +30,7 @@ _WORLD = (
 _RECORD = (
     "role", "group", "static", "unobstructed", "goal_threshold", "arrive_mode", "wander", "loop", "target_roles",
     "tags", "fov", "fov_radius", "fov_occlusion", "watches", "wheelbase", "color", "description",
-    "reflectivity", "material",
+    "reflectivity", "material", "perceives",
 )  # fmt: skip
 _POSE = ("x", "y", "theta")
 _CONTACT_WORLD = ("gravity",)

@@ -25,9 +25,9 @@ from typing import Any
 VERDICTS = ("better", "worse", "different", "open")
 MIN_PAIRS = 10
 """Pairs of episodes below which no difference is judged."""
-SHARES = ("success", "goal_reached", "timeout", "group_collision_rate", "left_world", "collision")
+SHARES = ("success", "success_in_belief", "goal_reached", "timeout", "group_collision_rate", "left_world", "collision")
 MORE = """
-    success goal_reached spl velocity_avg clearing_distance_min clearing_distance_avg space_compliance
+    success success_in_belief goal_reached spl velocity_avg clearing_distance_min clearing_distance_avg space_compliance
     distance_to_human_min stl barn_score crowdnav_reward min_clearance explored arrived_share
 """.split()  # noqa: SIM905
 LESS = """

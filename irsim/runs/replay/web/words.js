@@ -3,7 +3,7 @@
 import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, hasLeft, isAbsent, poseAt, speedAt, STOPPED, waits } from "./run.js";
 
 const KINDS = {
-  collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way",
+  collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way", believed_arrival: "believes to be at its goal",
   overshoot: "jumps over its goal", zone_entry: "enters", zone_exit: "leaves", line_crossing: "crosses",
   sight_start: "sees", sight_end: "no longer sees",
 };
@@ -11,7 +11,7 @@ const MANY_OF = {
   collision: "collisions", arrival: "arrivals", waypoint: "waypoints", no_path: "searches without a way",
   overshoot: "jumps over goals", zone_entry: "zones entered", zone_exit: "zones left", line_crossing: "lines crossed",
   sight_start: "sights begun", sight_end: "sights ended", contact_between_steps: "contacts between steps",
-  passed_through: "passages through something",
+  passed_through: "passages through something", believed_arrival: "arrivals in belief",
 };
 
 export const manyWords = (kind) => MANY_OF[kind] ?? kind;

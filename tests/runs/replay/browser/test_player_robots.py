@@ -1,4 +1,4 @@
-"""What the page says and shows of single robots: colour, speed, dart, name."""
+"""The page tells and shows of single robots: colour, speed, dart, name."""
 
 from __future__ import annotations
 
