@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 
+from irsim.objects.drawing.scene_builder import SceneBuilder
+
 SCENE = """
 world: {width: 12, height: 12}
 robot:
@@ -42,6 +44,20 @@ def test_sensors_of_one_cone_read_by_name(make: Callable[..., Any]) -> None:
         env.step()
     assert infrared.read()["range"] == pytest.approx(7.5 - 0.2 - float(env.robot_list[0].state[0, 0]), rel=1e-4)
     assert sonar.units == ("m", "1", "rad")
+
+
+def test_cones_are_drawn_up_to_what_they_read(make: Callable[..., Any]) -> None:
+    env = make(SCENE)
+    for _ in range(40):
+        env.step()
+    marks = SceneBuilder(env.simulation).build().marks
+    drawn = [mark.geometry for mark in marks if mark.part == "fov"]
+    sonar, _, _, behind = env.robot_list[0].sensors
+    x = float(env.robot_list[0].state[0, 0])
+    assert len(drawn) == 3
+    assert (drawn[0].x, drawn[0].radius) == pytest.approx((x + 0.2, sonar.read()["range"]))
+    assert drawn[2].end - drawn[2].start == pytest.approx(behind.options.cone)
+    assert drawn[2].x == pytest.approx(x - 0.2)
 
 
 def test_a_shortest_range_beyond_the_greatest_is_an_error(make: Callable[..., Any]) -> None:

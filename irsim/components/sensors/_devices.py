@@ -250,8 +250,12 @@ INFRARED: Mapping[str, Device] = {
     "vl53l0x": _device(
         "ST VL53L0X",
         (
-            Source("ST data sheet of VL53L0X: up to 2 m, field of view of 25 degrees"),
-            {"range_min": 0.0, "range_max": 2.0, "cone": 0.4363, "folds": False},
+            Source("ST data sheet of VL53L0X, DocID029104 Rev 1: absolute range up to 2 m", "2026-11-30"),
+            {"range_max": 2.0},
+        ),
+        (
+            Source("ST data sheet of VL53L0X: field of view of 25 degrees; time of flight, which does not fold"),
+            {"range_min": 0.0, "cone": 0.4363, "folds": False},
         ),
     ),
 }

@@ -38,7 +38,8 @@ from irsim.objects.drawing.object_marks import (
 from irsim.objects.drawing.signs import shows_motion
 from irsim.objects.drawing.visible_sector import visible_sector
 from irsim.objects.sensors.contact import Contact2D
-from irsim.objects.sensors.drawing import draw_forces, draw_scan
+from irsim.objects.sensors.drawing import draw_cone, draw_forces, draw_scan
+from irsim.objects.sensors.gauge import Gauge
 from irsim.objects.sensors.lidar import Lidar2D
 from irsim.simulation.fog import FOG_COLOR
 
@@ -329,6 +330,8 @@ class SceneBuilder:
                     marks, beams = draw_forces(sensor, i)
                     scene.marks += marks
                     scene.beams += beams
+                elif isinstance(sensor, Gauge):
+                    scene.marks += draw_cone(sensor)
 
     def _fog(self) -> Fog | None:
         explored = self.simulation.state.explored[self.world]

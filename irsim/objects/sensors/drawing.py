@@ -1,19 +1,23 @@
-"""Draws what sensors measure: beams of a lidar, coloured by radial velocity if it measures that, and contact forces."""
+"""Draws what sensors measure: beams of lidars, also coloured by radial velocity, cones of sonars, contact forces."""
 
 from __future__ import annotations
 
+import math
 from typing import Any, Protocol
 
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.scene import Beams, Dots, Line, Mark, Stroke
+from irsim.components.sensors._cones import ConeOptions
+from irsim.graphics.scene.scene import Beams, Dots, Line, Mark, Sector, Stroke
+from irsim.graphics.scene.style import Palette
 
-__all__ = ["BEAM_ZORDER", "draw_forces", "draw_scan"]
+__all__ = ["BEAM_ZORDER", "draw_cone", "draw_forces", "draw_scan"]
 
 BEAM_ZORDER = 2
 _DOT_ZORDER = 4
 _CONTACT_ZORDER = 5
+_CONE_ALPHA = 0.15
 
 
 class Scan(Protocol):
@@ -107,6 +111,23 @@ def velocity_colors(velocity: Floats, look: dict[str, Any]) -> Floats:
     away, near = (np.array(to_rgba(look[f"{way}_velocity_color"])) for way in ("positive", "negative"))
     colors: Floats = rest + share * (np.where(velocity[:, None] >= 0.0, away, near) - rest)
     return colors
+
+
+def draw_cone(gauge: Any) -> list[Mark]:
+    """Return the cone of a sensor that has one, up to its reading; nothing for others.
+
+    Args:
+        gauge: The :class:`irsim.objects.sensors.gauge.Gauge` of an object.
+    """
+    options = gauge.options
+    if not isinstance(options, ConeOptions):
+        return []
+    x, y, theta = gauge.parent.state.reshape(-1)[:3].tolist()
+    (dx, dy, turn), half = options.offset, options.cone / 2
+    x, y = x + math.cos(theta) * dx - math.sin(theta) * dy, y + math.sin(theta) * dx + math.cos(theta) * dy
+    cone = Sector(x, y, gauge.read()["range"], theta + turn - half, theta + turn + half)
+    color = Palette().lidar
+    return [Mark(gauge.obj_id, "fov", cone, color, Stroke(color), _CONE_ALPHA, BEAM_ZORDER)]
 
 
 def draw_forces(contact: Any, sensor: int = 0) -> tuple[list[Mark], list[Beams]]:
