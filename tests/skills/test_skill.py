@@ -254,6 +254,7 @@ def test_the_program_that_writes_references_has_help(capsys: pytest.CaptureFixtu
 def test_every_built_in_component_has_its_section() -> None:
     for kind, registry in REGISTRIES.items():
         text = RUNNER_BRIDGES.read_text(encoding="utf-8") if kind == "bridge" else page(PAGE_OF[kind])
+        text += page("perception") if kind == "sensor" else ""
         for feature in registry.features():
             if feature.origin == "built-in":
                 mark = "" if feature.simulated else " \\(not simulated by this version\\)"
