@@ -68,7 +68,9 @@ def test_walls_of_a_map_count_once_each() -> None:
     cells[10:13] = 1
     cells[30] = 1
     grid = core.OccupancyGrid(cells, (0, -0.5), (0.1, 0.1))
-    assert walls(obstacle(parts=[core.GridCells(grid=grid)]), pose=(0.05, 0.0, 0.0)) == [2]
+    cells_of_map = obstacle(parts=[core.GridCells(grid=grid)])
+    assert walls(cells_of_map, pose=(0.05, 0.0, 0.0)) == [2]
+    assert walls(cells_of_map, pose=(0.05, 0.0, 0.0), anchors=[[1.15, 0.0], [60.0, 0.0], [60.0, 60.0]]) == [1, 2, 0]
 
 
 def test_random_lines_cross_what_shapely_says() -> None:

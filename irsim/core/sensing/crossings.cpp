@@ -27,8 +27,9 @@ int areas_crossed(const OccupancyGrid& grid, Vec2 from, Vec2 to) {
   const CellWalk walk(grid, from);
   const auto solid = [&](double at) {
     const Vec2 p = from + beam * at - grid.origin();
-    return grid.occupied(static_cast<int>(std::floor(p.x / grid.cell().x)),
-                         static_cast<int>(std::floor(p.y / grid.cell().y)));
+    const double column = p.x / grid.cell().x, row = p.y / grid.cell().y;
+    if (!(column >= 0.0 && column < grid.columns() && row >= 0.0 && row < grid.rows())) return false;
+    return grid.occupied(static_cast<int>(column), static_cast<int>(row));
   };
   int count = 0;
   bool inside = false;

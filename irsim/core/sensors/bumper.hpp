@@ -61,6 +61,10 @@ class Pressing {
   }
   /// Cut an edge of the hull where it leaves the sector, and look at the pieces inside.
   bool edge(const std::array<double, 2>& sector, Vec2 from, Vec2 to, double reach) const {
+    Box near;
+    near.include(from), near.include(to);
+    if (overlap_) near.include(s_.pose.position());
+    if (!grown(near, reach).meets(other_.box)) return false;
     const Vec2 a = unrotate(from - s_.pose.position(), s_.direction), along = unrotate(to - from, s_.direction);
     double cuts[4] = {0.0, 1.0, 1.0, 1.0};
     int count = 1;
