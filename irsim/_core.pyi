@@ -1311,6 +1311,12 @@ class Log:
     def ranges(self) -> NDArray[np.float32]:
         """(scan_rows, beams) ranges [m], infinite without a valid hit."""
 
+    @property
+    def reading_rows(self) -> NDArray[np.int64]: ...
+    @property
+    def readings(self) -> Floats:
+        """(reading_rows, readings of a world) numbers of sensors that report numbers instead of ranges."""
+
 def advance(
     world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, external: bool = False
 ) -> int:

@@ -1,6 +1,6 @@
 """A piece of a recorded run as an uncompressed NPZ file, in which values that rarely change are stored once per change.
 
-Poses and controls have one row per step; goals, flags and scans only the rows in which they change.
+Poses and controls have one row per step; goals, flags, scans and readings only the rows in which they change.
 """
 
 from __future__ import annotations
@@ -56,11 +56,13 @@ class Layout:
         names: Names of the N objects.
         sensors: Key and number of beams of each sensor whose ranges are recorded.
         step_time: Period [s].
+        gauges: Key, names of a row of numbers, and how many numbers there are, of each sensor that reports numbers.
     """
 
     names: tuple[str, ...]
     sensors: Sequence[tuple[str, int]]
     step_time: float
+    gauges: Sequence[tuple[str, Sequence[str], int]] = ()
 
 
 def pack_chunk(
@@ -73,7 +75,8 @@ def pack_chunk(
     ``ranges`` (K, beams) with one row per change. ``piece.json`` has the ``first`` step and number of ``rows``, the
     indices of the ``movers``, the rows from which on each goal, flag and scan holds (``goal_rows``, ``flag_rows``,
     ``scan_rows``, empty without scans), and the ``events``. If some of the movers have actuators, their commands are
-    in ``command`` (T, number of them, C), and ``piece.json`` has their indices (``commanded``).
+    in ``command`` (T, number of them, C), and ``piece.json`` has their indices (``commanded``). The numbers of sensors
+    without beams are in ``readings`` (K, number of them), with one row per change (``reading_rows``).
 
     Args:
         log: The trace since the last piece.
@@ -100,6 +103,8 @@ def pack_chunk(
     }
     if log.commanded:
         about["commanded"], arrays["command"] = log.commanded, log.command
+    if log.readings.size:
+        about["reading_rows"], arrays["readings"] = log.reading_rows.tolist(), log.readings
     entries = [
         (f"{name}.npy", _head(array), array.data.cast("B") if array.size else b"") for name, array in arrays.items()
     ]
@@ -146,7 +151,8 @@ def load_chunk(path: Path, layout: Layout, objects: Sequence[int] | None = None,
     """
     with _as_run_error(path), _opened(path) as archive:
         about = read_json(archive.read(_ABOUT), most_bytes=_MAX_BYTES)
-        names = [*_ARRAYS, *(["ranges"] if scans else []), *(["command"] if "commanded" in about else [])]
+        measured = ["ranges", *(["readings"] if "reading_rows" in about else [])] if scans else []
+        names = [*_ARRAYS, *measured, *(["command"] if "commanded" in about else [])]
         arrays = {name: read_array(archive, archive.getinfo(f"{name}.npy"), _KINDS) for name in names}
         for array in arrays.values():
             _check_values(array)
@@ -219,6 +225,7 @@ def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layou
         parts = zip(layout.sensors, np.split(scans, cuts, axis=1), strict=True)
         ranges = {key: part for (key, _), part in parts if key.rpartition("/")[0] in names}
     step = np.arange(first, first + rows, dtype=np.int64)
+    readings = _readings(about, arrays["readings"], rows, layout, names) if "readings" in arrays else {}
     return Trace(
         step=step,
         time=step.astype(np.float64) * layout.step_time,
@@ -232,7 +239,26 @@ def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layou
         ranges=ranges,
         names=names,
         step_time=layout.step_time,
+        readings=readings,
     )
+
+
+def _readings(
+    about: dict[str, Any], values: NDArray[Any], rows: int, layout: Layout, names: Sequence[str]
+) -> dict[str, NDArray[np.void]]:
+    """The numbers of each sensor of the chosen objects, see ``Trace.readings``."""
+    counts = [count for _, _, count in layout.gauges]
+    all_of_them = _expand(about["reading_rows"], values, rows, (sum(counts),))
+    readings = {}
+    parts = np.split(all_of_them, np.cumsum(counts)[:-1], axis=1)
+    for (key, columns, count), part in zip(layout.gauges, parts, strict=True):
+        if key.rpartition("/")[0] not in names:
+            continue
+        if not columns or count % len(columns) or len(set(columns)) != len(columns):
+            raise ValueError(f"'{key}' has no {count} numbers")
+        row = np.ascontiguousarray(part).view([(name, np.float64) for name in columns])
+        readings[key] = row[:, 0] if count == len(columns) else row
+    return readings
 
 
 def _expand(

@@ -199,6 +199,19 @@ def _pairs(before: Trace, after: Trace, length: int) -> Iterator[_Pair]:
         quantities = [f"ranges_{number}[{beam}]" for beam in range(beams)]
         first, second = (scan[:known, :beams] for scan in scans)
         yield _Pair(quantities, [name] * beams, first, second, is_scan=True)
+    for key in sorted(before.readings.keys() & after.readings.keys()):
+        tables = [_numbers(trace.readings[key][:length]) for trace in (before, after)]
+        name, _, sensor = key.rpartition("/")
+        columns = [f"{sensor}.{column}" for column in before.readings[key].dtype.names or ()]
+        known, width = min(map(len, tables)), min(table.shape[1] for table in tables)
+        quantities = (columns * (width // max(1, len(columns)) + 1))[:width]
+        one, two = (table[:known, :width] for table in tables)
+        yield _Pair(quantities, [name] * width, one, two)
+
+
+def _numbers(rows: NDArray[np.void]) -> NDArray[np.float64]:
+    """(T, n) numbers of the readings of one sensor."""
+    return np.ascontiguousarray(rows).view(np.float64).reshape(len(rows), -1)
 
 
 def _partings(pair: _Pair, row: int, columns: NDArray[np.int64]) -> list[Parting]:

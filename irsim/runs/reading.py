@@ -38,6 +38,7 @@ class _Meta(BaseModel):
 
     names: list[Name]
     sensors: list[tuple[Name, Annotated[int, Field(strict=True, gt=0, le=10**7)]]]
+    gauges: list[tuple[Name, list[Name], Annotated[int, Field(strict=True, gt=0, le=10**7)]]] = []
     step_time: Annotated[float, Field(strict=True, gt=0, le=1e9, allow_inf_nan=False)]
     seed: Annotated[int, Field(strict=True, ge=0, lt=2**128)]
     id: Name = ""
@@ -245,7 +246,11 @@ class Run:
 
     def _piece(self, name: str, objects: Sequence[int] | None = None, scans: bool = True) -> Trace:
         sensors = [(str(key), int(beams)) for key, beams in self.meta["sensors"]]
-        return load_chunk(self._path(name), Layout(self.names, sensors, self.step_time), objects, scans=scans)
+        gauges = [
+            (str(key), [str(one) for one in names], int(count)) for key, names, count in self.meta.get("gauges", ())
+        ]
+        layout = Layout(self.names, sensors, self.step_time, gauges)
+        return load_chunk(self._path(name), layout, objects, scans=scans)
 
     def _events_in(self, name: str) -> Any:
         """Events in a piece of the trace, or in a file of events."""

@@ -42,7 +42,7 @@ from irsim.runs.store import (
 )
 from irsim.simulation.engine import engine
 from irsim.simulation.events import Event, read_events
-from irsim.simulation.trace import recorded_rows, sensors
+from irsim.simulation.trace import gauges, recorded_rows, sensors
 
 if TYPE_CHECKING:
     from irsim.results.run import RunResult
@@ -107,7 +107,7 @@ class Recorder:
             self.folder = str(_make_empty_folder(folder))
         self.run_id = os.path.basename(self.folder)
         self._claim: Claim | None = None
-        self._scan = 4 * simulation.world.beams_per_world  # bytes of all ranges of one step
+        self._scan = 4 * simulation.world.beams_per_world + 8 * simulation.world.readings_per_world  # bytes in one step
         limited = self._runs is not None
         self._scans = scans = 0 < self._scan <= (_MAX_SCAN_BYTES if limited else sys.maxsize)
         self._scan_rows = (_MAX_SCANS_BYTES if limited else sys.maxsize) // self._scan if scans else 0  # rows left
@@ -115,6 +115,7 @@ class Recorder:
         self._piece_rows = max(1, _MAX_PIECE_NUMBERS // max(1, 3 * simulation.objects))
         self._revision = simulation.revision
         kept, self._movers = sensors(simulation) if scans else [], recorded_rows(simulation)
+        told = gauges(simulation) if scans else []
         seed = int(simulation.key()[0])
         self._log = _log_of(simulation, self._movers, scans)
         self._spare: core.Log | None = None  # holds the piece that is being written, or nothing
@@ -138,6 +139,7 @@ class Recorder:
             "options": dict(options),
             "names": [record.name for record in simulation.scenario.objects],
             "sensors": [[key, beams.stop - beams.start] for key, beams in kept],
+            **({"gauges": told} if told else {}),
             "scans": scans or not self._scan,
             "trace_until": None,
             "scans_until": None,
@@ -281,7 +283,7 @@ class Recorder:
             self._pieces += 1
         if log.rows:
             self._bytes += log.bytes
-            self._scan_bytes += 4 * log.ranges.size
+            self._scan_bytes += 4 * log.ranges.size + 8 * log.readings.size
             self._scan_rows -= log.rows
             until, pose = log.first + log.rows - 1, self._simulation.pose.copy()
             full = self._bytes - self._scan_bytes >= self._most_bytes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +21,7 @@ __all__ = [
     "Trace",
     "all_poses",
     "cut_trace",
+    "gauges",
     "join_traces",
     "next_rows",
     "past_goals",
@@ -79,6 +80,10 @@ class Trace:
         ranges: (T, B) ranges [m] of each sensor, infinite for a beam that hit nothing. The keys are ``<object
             name>/<number of the sensor among the native sensors of the object>``. Empty if scans were not recorded; a
             recorded run has fewer than T rows if it was too large to store all of them.
+        readings: Numbers of each sensor that reports numbers, by its key ``<object name>/<sensor>`` (``_2`` for a
+            second one of a kind): a structured array (T,), or (T, K) of a sensor that reports K rows, whose fields have
+            the names that ``sensor.read()`` gives: ``readings["robot_0/odometry"]["x"]``. Empty in traces that are not
+            of a recorded run; as many rows as ``ranges`` have.
         names: Names of the objects, in order.
         step_time: Period [s].
     """
@@ -95,6 +100,7 @@ class Trace:
     names: tuple[str, ...]
     step_time: float
     command: Floats | None = None
+    readings: dict[str, NDArray[np.void]] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.step)
@@ -197,17 +203,21 @@ def join_traces(parts: Sequence[Trace]) -> Trace:
     first = parts[0]
     stacked = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _BY_ROW}
     ranges = {key: np.concatenate([part.ranges[key] for part in parts]) for key in first.ranges}
+    readings = {key: np.concatenate([part.readings[key] for part in parts]) for key in first.readings}
     commands = [part.command for part in parts if part.command is not None]
     command = np.concatenate(commands) if len(commands) == len(parts) else None
-    return Trace(**stacked, ranges=ranges, names=first.names, step_time=first.step_time, command=command)
+    return Trace(
+        **stacked, ranges=ranges, names=first.names, step_time=first.step_time, command=command, readings=readings
+    )
 
 
 def cut_trace(trace: Trace, rows: slice) -> Trace:
     """Return some rows of a trace as views; its ranges have fewer rows where scans were not recorded to the end."""
     cut = {name: getattr(trace, name)[rows] for name in _BY_ROW}
     ranges = {key: block[rows] for key, block in trace.ranges.items()}
+    readings = {key: block[rows] for key, block in trace.readings.items()}
     command = None if trace.command is None else trace.command[rows]
-    return Trace(**cut, ranges=ranges, names=trace.names, step_time=trace.step_time, command=command)
+    return Trace(**cut, ranges=ranges, names=trace.names, step_time=trace.step_time, command=command, readings=readings)
 
 
 def record_rollout(simulation: Simulation, steps: int, *, until_done: bool) -> Rollout:
@@ -262,6 +272,26 @@ def sensors(simulation: Simulation) -> list[tuple[str, slice]]:
     for owner, first, count in simulation.world.scans():
         number = numbers[owner] = numbers.get(owner, -1) + 1
         columns.append((f"{records[owner].name}/{number}", slice(first, first + count)))
+    return columns
+
+
+def gauges(simulation: Simulation) -> list[tuple[str, list[str], int]]:
+    """Return, for each sensor that reports numbers: its key, the names of a row of them, and how many there are.
+
+    The key is ``<object>/<sensor>``, of a second one of a kind ``<object>/<sensor>_2``. Their numbers follow each other
+    in the readings.
+    """
+    taken: dict[str, int] = {}
+    columns = []
+    options = {
+        owner: [one for one in record.sensors if hasattr(one, "numbers")]
+        for owner, record in enumerate(simulation.scenario.objects)
+    }
+    for owner, _, count in simulation.world.gauges():
+        sensor: Any = options[owner].pop(0)
+        key = f"{simulation.scenario.objects[owner].name}/{sensor.name}"
+        number = taken[key] = taken.get(key, 0) + 1
+        columns.append((key if number == 1 else f"{key}_{number}", [name for name, _ in sensor.numbers()], count))
     return columns
 
 

@@ -87,6 +87,10 @@ void bind_log(nb::module_& m) {
                    })
       .def_prop_ro("scan_rows",
                    [](const Log& s) { return column_view<std::int64_t>(s.scan_rows, {s.scan_rows.size()}); })
+      .def_prop_ro("reading_rows",
+                   [](const Log& s) { return column_view<std::int64_t>(s.reading_rows, {s.reading_rows.size()}); })
+      .def_prop_ro("readings",
+                   [](const Log& s) { return column_view<double>(s.readings, {s.reading_rows.size(), s.gauges}); })
       .def_prop_ro("ranges", [](const Log& s) { return column_view<float>(s.ranges, {s.scan_rows.size(), s.beams}); });
 }
 

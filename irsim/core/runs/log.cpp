@@ -41,6 +41,7 @@ Log::Log(const World& world, std::vector<int> movers_, int columns_, bool scans_
       columns(columns_),
       scans(scans_),
       beams(scans_ ? world.beams_per_world : 0),
+      gauges(scans_ ? world.readings_per_world : 0),
       flags_now_(world.objects) {
   for (const int i : movers) {
     if (world.has_actuators[i]) commanded.push_back(i);
@@ -68,6 +69,7 @@ void Log::add(const State& state) {
   }
   add_if_changed(flag_rows, flags, rows, flags_now_.data(), objects);
   if (beams > 0) add_scan(state);
+  add_if_changed(reading_rows, readings, rows, state.readings.data, gauges);
   ++rows;
 }
 
@@ -85,6 +87,7 @@ void Log::add_scan(const State& state) {
 void Log::clear() {
   rows = 0;
   pose.clear(), control.clear(), command.clear(), goal.clear(), flags.clear(), ranges.clear();
+  readings.clear(), reading_rows.clear();
   goal_rows.clear(), flag_rows.clear(), scan_rows.clear();
 }
 

@@ -48,8 +48,8 @@ struct Column {
   std::size_t size() const { return numbers->size(); }
 };
 
-/// Rows of world 0. Each row has poses and controls of the movers; goals, flags and scans are stored only where they
-/// differ from the row before.
+/// Rows of world 0. Each row has poses and controls of the movers; goals, flags, scans and readings are stored only
+/// where they differ from the row before.
 struct Log {
   Log(const World& world, std::vector<int> movers, int columns, bool scans);
 
@@ -62,19 +62,21 @@ struct Log {
   std::vector<int> commanded;  // movers whose commands pass through actuators, and are recorded, too
   int objects, columns;        // `columns`: recorded numbers of each control
   bool scans;
-  std::size_t beams;
+  std::size_t beams, gauges;  // numbers of a scan, and of the sensors that report numbers instead
 
   std::int64_t first = 0, rows = 0;  // step of the first row, number of rows
   Column<double> pose;               // (rows, movers, 3)
   Column<float> control;             // (rows, movers, columns)
   Column<float> command;             // (rows, commanded, columns)
-  Column<std::int64_t> goal_rows, flag_rows, scan_rows;
+  Column<std::int64_t> goal_rows, flag_rows, scan_rows, reading_rows;
   Column<Goal> goal;           // (goal_rows, N)
-  Column<std::uint8_t> flags;  // (flag_rows, N): 1 arrived, 2 collided, 4 stopped
+  Column<std::uint8_t> flags;  // (flag_rows, N): 1 arrived, 2 collided, 4 stopped, 8 believes to have arrived
   Column<float> ranges;        // (scan_rows, beams), infinite without a valid hit
+  Column<double> readings;     // (reading_rows, gauges)
 
   std::size_t bytes() const {
-    return 8 * (pose.size() + 3 * goal.size()) + 4 * (control.size() + command.size() + ranges.size());
+    return 8 * (pose.size() + 3 * goal.size() + readings.size()) +
+           4 * (control.size() + command.size() + ranges.size());
   }
 
  private:
