@@ -26,7 +26,7 @@ class _Options:
 
 # kinematics (one header each in core/kinematics/)
 class DiffOptions(_Options):
-    def __init__(self, *, noise: bool, alpha: Sequence[float]) -> None: ...
+    def __init__(self, *, noise: bool, alpha: Sequence[float], track: float) -> None: ...
 
 class OmniOptions(_Options):
     def __init__(self, *, noise: bool, alpha: Sequence[float]) -> None: ...
@@ -64,6 +64,7 @@ class SkidSteerOptions(_Options):
         traction_left: float,
         traction_right: float,
         speed_max: float,
+        track: float,
     ) -> None: ...
 
 class SingleTrackOptions(_Options):
@@ -110,6 +111,7 @@ class DiffDynamicOptions(_Options):
         torque_constant: float,
         gear: float,
         response: float,
+        friction: float,
     ) -> None: ...
 
 # behaviors (core/behaviors/)
@@ -362,6 +364,31 @@ class Actuation(_Options):
         lag: Sequence[float],
         dead_band: Sequence[float],
         noise: Sequence[float],
+    ) -> None: ...
+
+class Ground(_Options):
+    """The ground of a zone.
+
+    Args:
+        zone: Index of the zone, which is an area.
+        slip: Mean share of a wheel's way that the body does not move, 0 to 1.
+        slip_std: Standard deviation of that share.
+        slip_time: Time in which a deviation falls to 1 / e [s]; 0: each step has its own.
+        grip: Factor on the friction of wheels.
+        spread: Track of `skid_steer` as it turns, over the distance of its sides; 0: as the drive says.
+        traction: Speed over ground per speed of a side of `skid_steer`, where `spread` is given.
+    """
+
+    def __init__(
+        self,
+        *,
+        zone: int,
+        slip: float,
+        slip_std: float,
+        slip_time: float,
+        grip: float,
+        spread: float,
+        traction: float,
     ) -> None: ...
 
 class RouteOptions(_Options):
@@ -1016,6 +1043,7 @@ class World:
             crosses or enters them.
         views: Fields of view that are watched. Events name which targets come into them or go out of them.
         targets: Indices of the objects that count as seen.
+        grounds: What zones do to wheels, in the order of the zones.
     """
 
     def __init__(
@@ -1032,6 +1060,7 @@ class World:
         zones: Sequence[Part] = (),
         views: Sequence[View] = (),
         targets: Sequence[int] = (),
+        grounds: Sequence[Ground] = (),
     ) -> None: ...
     # collision_mode: 0 stop, 1 unobstructed, 2 unobstructed_obstacles, 3 contact
     copies: int

@@ -289,6 +289,7 @@ FEATURES: dict[str, tuple[str, ...]] = {
 EXTENSIONS: dict[str, str] = {
     "bridges": "connections to other programs",
     "world.boundary": "walls at the edge of the world",
+    "kinematics.diff.track": "for `world.zones` with `slip`",
     "entry.actuation": "dead time, lag, jerk and noise between a command and its execution",
     "world.seed": "default seed",
     "world.contacts": "contacts within a step can count as collisions",
@@ -296,7 +297,7 @@ EXTENSIONS: dict[str, str] = {
     "world.time_limit": "time horizon of a run",
     "world.description": "any text",
     "world.metadata": "any mapping",
-    "world.zones": "lines and areas that are watched, without effect on anything else",
+    "world.zones": "lines and areas that are watched, and areas whose ground lets wheels slip",
     "world.plot.show_zones": "draw them",
     "entry.tags": "any words; metrics count objects with the tag pedestrian as humans",
     "entry.waypoints": "several goals in order, with fewer brackets than in `goal`",

@@ -134,6 +134,8 @@ class KinematicsOptions(Options):
     """Whether its steered wheel may stand at a quarter turn, so that it turns on the spot."""
     slips: ClassVar[bool] = False
     """Whether the body moves otherwise than its controls say, such as wheels that slip or that need time."""
+    feels: ClassVar[tuple[str, ...]] = ()
+    """What the ground of a zone changes: `slip`, `grip` or `surface`. Drives of user code feel none of it."""
     coasts: ClassVar[bool] = False
     """Whether its speeds are states of their own, which need time to change; contacts cannot push such a body."""
     usual_vel_max: ClassVar[tuple[float, ...]] = ()

@@ -6,6 +6,7 @@
 //   Rows    rows(options)                which controls are what
 //   Vec3    constrain(options, control)  limits beyond vel_min, vel_max and acce (optional)
 //   void    rest(options, extra)         forget inner speeds, when something else has stopped the body (optional)
+//   array   wheels(options)              body-frame places of its two wheels, where the ground matters (optional)
 //   Car     steering(options)            how it steers, of a drive whose second control steers wheels (optional)
 //
 // The struct has `bool noise`. A field `wheelbase` receives the wheelbase of the drive, else of the shape, else 1.
@@ -16,6 +17,7 @@
 
 #include <optional>
 
+#include "footing.hpp"
 #include "geometry/vec.hpp"
 #include "integration.hpp"
 #include "steering.hpp"
@@ -31,6 +33,8 @@ struct Motion {
   Vec3 control;    // executed control, noise included
   double dt;       // [s]
   Integration integration;
+  const Footing* footing = nullptr;  // (2,) of its wheels; null: they do not slip
+  Vec3* unmoved = nullptr;  // receives the way ahead and aside [m] and the turn [rad] that wheels make and the body not
 };
 
 /// How sharply a drive that cannot move sideways turns toward a wanted velocity.
@@ -76,6 +80,7 @@ struct Rows {
   int yaw;        // index of the component that is a yaw rate, -1 without one: contacts then change the speed only
   int inner = 0;  // number of extra state rows that the drive uses
   bool coasts = false;  // whether speeds are among these rows, so that they need time to change
+  bool slides = false;  // whether wheels turn otherwise than the body moves on every ground
 };
 
 template <class Options>
@@ -85,6 +90,11 @@ Vec3 constrain(const Options&, Vec3 control) {
 
 template <class Options>
 void rest(const Options&, double*) {}
+
+template <class Options>
+std::array<Vec2, 2> wheels(const Options&) {
+  return {};
+}
 
 template <class Options>
 std::optional<Car> steering(const Options&) {
@@ -104,6 +114,24 @@ inline void translate(const Motion& m, Vec2 body_velocity, double yaw_rate) {
 inline void move(const Motion& m, Vec2 body_velocity, double yaw_rate) {
   translate(m, body_velocity, yaw_rate);
   m.pose.theta = wrap(m.pose.theta + yaw_rate * m.dt);
+}
+
+/// Add to what wheels turn and the body does not move.
+///
+/// Args:
+///   wheels, wheel_turn: Velocity in the body frame and yaw rate that the turns of the wheels alone would give.
+///   body, body_turn: The true ones.
+///   time: For which they hold [s].
+inline void add_unmoved(const Motion& m, Vec2 wheels, double wheel_turn, Vec2 body, double body_turn, double time) {
+  if (m.unmoved == nullptr) return;
+  Vec3& sum = *m.unmoved;
+  sum[0] += (wheels.x - body.x) * time, sum[1] += (wheels.y - body.y) * time, sum[2] += (wheel_turn - body_turn) * time;
+}
+
+/// Translate and turn as `move` does, on wheels of which some slip.
+inline void move_on_ground(const Motion& m, Vec2 wheels, double wheel_turn, Vec2 body, double body_turn) {
+  move(m, body, body_turn);
+  add_unmoved(m, wheels, wheel_turn, body, body_turn, m.dt);
 }
 
 /// Write the twist of a drive whose velocity changes within the period: of the arc, or under Euler of the straight way,

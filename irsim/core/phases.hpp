@@ -42,6 +42,8 @@ bool done(const World& world, const State& state, int w);
 void decide(const World& world, State& state, int w, Workspace& work, int object);
 void limit(const World& world, State& state, int w, int object);
 void integrate(const World& world, State& state, int w, int object);
+/// Find out what the ground does to the wheels of a row in this step.
+void feel_ground(const World& world, State& state, int row);
 /// Give a wandering object a new random goal and a looping one its initial goals; a single goal alternates with the
 /// start.
 void renew_goals(const World& world, State& state, int w, int object);

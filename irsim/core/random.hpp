@@ -27,11 +27,12 @@ enum class Stream : std::uint64_t {
   perturbation,
   policy,
   task,
-  actuation
+  actuation,
+  slip
 };
-constexpr std::array<const char*, 13> kStreamNames = {"placement", "shape",   "goal",     "motion", "sensor",
-                                                      "behavior",  "planner", "map",      "user",   "perturbation",
-                                                      "policy",    "task",    "actuation"};
+constexpr std::array<const char*, 14> kStreamNames = {"placement", "shape",   "goal",      "motion", "sensor",
+                                                      "behavior",  "planner", "map",       "user",   "perturbation",
+                                                      "policy",    "task",    "actuation", "slip"};
 
 /// The stream of sensor number `index` of an object.
 inline std::uint64_t sensor_stream(int index) {

@@ -108,6 +108,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "target-roles-nobody": ("robot: {behavior: {name: rvo, target_roles: robot}}", "robot: {behavior: {name: rvo}}"),
     "jumps-through": ("robot: {vel_max: [8, 1], vel_min: [-8, -1], goal_threshold: 0.5}\nobstacle: {shape: {name: rectangle, length: 0.1, width: 4}, state: [5, 5, 0.7854]}", "robot: {vel_max: [1, 1]}\nobstacle: {shape: {name: rectangle, length: 0.1, width: 4}, state: [5, 5, 0.7854]}"),
     "actuation-unused": ("robot: {kinematics: null, behavior: null, actuation: {delay: 0.1}}", "robot: {actuation: {delay: 0.1}}"),
+    "ground-unfelt": ("world: {zones: [{name: ice, rectangle: [4, 0, 6, 10], grip: 0.2}]}\nrobot: {kinematics: {name: diff}}", "world: {zones: [{name: ice, rectangle: [4, 0, 6, 10], slip: 0.2}]}\nrobot: {kinematics: {name: diff}}"),
     "reacts-late": ("robot: {behavior: {name: orca}, actuation: {delay: 0.3}}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0]}", "robot: {behavior: {name: orca}, actuation: {delay: 0.04}}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0]}"),
     "lag-twice": ("robot: {kinematics: {name: diff, tau: 0.1}, actuation: {lag: 0.2}}", "robot: {kinematics: {name: diff}, actuation: {lag: 0.2}}"),
     "perceives-without-sensor": ("robot: {perceives: estimate}", "robot: {perceives: estimate, sensors: [{name: localization}]}"),

@@ -229,7 +229,7 @@ GUIDES: dict[str, Guide] = {
         "an area that a robot stays out of",
         "Name the area in world.zones, and the zone under `avoid` of follow: the zone is then solid for this robot "
         "alone, and the run says who else entered it. For people who must keep their distance, make the circle larger. "
-        "Without `avoid` a zone only watches. `within` of follow is the opposite: the area that the path stays in. "
+        "Without `avoid` a zone is no obstacle. `within` of follow is the opposite: the area that the path stays in. "
         "Random objects keep clear of a point or an object with `keep_clear` of the distribution random.",
         "world: {zones: [{name: talk, circle: {center: [6, 6], radius: 1.2}}]}\n"
         "robot: {state: [6, 1, 1.57], goal: [6, 11], behavior: {name: follow, local: {name: orca}, avoid: [talk]}}",
@@ -279,11 +279,11 @@ GUIDES: dict[str, Guide] = {
         "nothing vanishes or is made during a run. perturb delays starts by chance. A drive that answers its commands "
         "late is actuation: {delay: 0.1, lag: 0.2}. Doors and walls that open at a time or on a signal do not exist; "
         "an object that slides back and forth is an obstacle with kinematics omni and behavior {name: dash, loop: "
-        "true}. No weather, slippery floors, speed zones, traffic "
+        "true}. Floors are slippery where world.zones say so (see floor). No weather, speed zones, traffic "
         "lights, right of way, priorities, batteries, radio messages, pictures of cameras or arms; sensors are planar "
         "lidars and depth scans, sonar, ir_range, bumper, cliff, uwb, odometry, imu, gnss, localization and detectors. "
-        "gravity, friction and mass only affect pushing (collision_mode contact). Say what is not possible, and offer "
-        "the closest alternative, labelled as such. (Speed limits are vel_min, vel_max and acce.)",
+        "gravity, friction and mass of objects only affect pushing (collision_mode contact). Say what is not possible, "
+        "and offer the closest alternative, labelled as such. (Speed limits are vel_min, vel_max and acce.)",
         None,
         (
             *("limitations", "not possible", "impossible", "unsupported", "not simulated", "3d", "z", "altitude"),

@@ -51,7 +51,7 @@ def _world(source: _Source) -> str:
         "The section `world`: extent, time, modes. Lengths in meters, times in seconds.",
         _keys(source, "world"),
         "`plot` is in [plot.md](plot.md).",
-        "## Lines and areas that are watched: `world.zones`\n\n" + _zones(source),
+        "## Lines and areas that are watched, and slippery ones: `world.zones`\n\n" + _zones(source),
         f"## Grid maps: `world.obstacle_map`\n\n{_components(source, 'map', '###')}",
         "## The section `gui`\n\n### `gui.keyboard`\n\n" + _keys(source, "gui.keyboard"),
         "### `gui.mouse`\n\n" + _keys(source, "gui.mouse"),

@@ -141,6 +141,9 @@ EVERYDAY: dict[str, str] = {
     "world.obstacle_map.perlin": "random map, forest, procedural",
     "world.zones": "zone, region, gate, finish line, race, criterion, trip wire, geofence, enters, "
     "crosses a line, restricted area, surveillance",
+    "world.zones.slip": "slippery floor, wet floor, slippage, wheel slip, slip ratio, rutschig, resbaladizo",
+    "world.zones.grip": "ice, icy, low friction, mu, friction of the ground, traction",
+    "world.zones.surface": "gravel, grass, sand, asphalt, terrain type, ground type",
     "world.plot.title": "title, caption, heading of the picture",
     "world.collision_mode": "collision, crash, hit, bump, collide, impact",
     "world.time_limit": "time limit, timeout, duration, horizon, episode length, max steps, deadline",

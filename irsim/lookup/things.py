@@ -178,12 +178,14 @@ THINGS: dict[str, Guide] = {
         ),
     ),
     "floor": Guide(
-        "carpet, tiles and ice change nothing",
-        f"{NO} surfaces: no grip, slip or speed that depends on the place. A carpet can be drawn (an obstacle with "
-        "unobstructed: true, which nothing touches) or watched (world.zones). Slip of one robot everywhere: "
-        "kinematics skid_steer with traction_left and traction_right, single_track with friction, or noise of its "
-        "kinematics; a slower one: vel_max.",
-        "obstacle: {name: carpet, shape: {name: rectangle, length: 3, width: 2}, state: [5, 3, 0], unobstructed: true}",
+        "areas on which wheels slip: slip, grip and surface of world.zones",
+        "slip: 0.2 takes a fifth of the way of each wheel that is on the area, so a robot with one wheel on it turns; "
+        "slip_std lets it wander. grip: 0.1 (ice) acts on drives with forces, single_track and diff_dynamic; surface: "
+        "gravel on skid_steer. Wheel odometry then reports more than the way. plot: {show_zones: true} draws the area. "
+        "Behaviors and planners do not know of it, nothing is slower there by itself, and heights, bumps and sinking "
+        "in are not simulated.",
+        "world: {zones: [{name: wet, rectangle: [4, 2, 6, 4], slip: 0.2, slip_std: 0.05}]}\n"
+        "robot: {state: [1, 3, 0], goal: [9, 3], behavior: {name: dash}, sensors: [{name: odometry}]}",
         (
             *("carpet", "rug", "tile", "grass", "mud", "sand", "gravel", "slippery", "ice", "wet floor"),
             *("surface", "ground", "teppich", "boden", "rutschig", "alfombra", "suelo", "resbaladizo", "地毯", "地面"),

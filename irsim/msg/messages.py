@@ -20,7 +20,7 @@ from irsim.msg.geometry import (
     TwistWithCovariance,
     Vector3,
 )
-from irsim.objects.extensions.drives import body_twist
+from irsim.objects.extensions.drives import body_twist, wheels_slip
 
 __all__ = ["ContactState", "LaserScan", "ObjectState", "Odometry", "WorldState", "state_and_control"]
 
@@ -279,10 +279,10 @@ def _body_twist(obj: Any) -> Twist:
     """Return the body-frame twist that the present control of an object produces."""
     control = [*obj.velocity[:, 0].tolist(), 0.0, 0.0]
     forward, lateral, rate = 0.0, 0.0, 0.0
-    if obj.kinematics is not None and obj.record.kinematics.speeds == 2:
-        forward, lateral, rate = control[0], control[1], control[2] if obj.vel_dim > 2 else 0.0
-    elif obj.kinematics is not None and obj.record.kinematics.slips:
+    if wheels_slip(obj):
         forward, lateral, rate = body_twist(obj)
+    elif obj.kinematics is not None and obj.record.kinematics.speeds == 2:
+        forward, lateral, rate = control[0], control[1], control[2] if obj.vel_dim > 2 else 0.0
     elif obj.kinematics == "tricycle":
         steer = float(obj.state[3, 0])
         forward, rate = control[0] * math.cos(steer), control[0] * math.sin(steer) / (obj.wheelbase or 1.0)

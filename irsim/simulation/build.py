@@ -12,6 +12,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.outline import Outline, part_of
 from irsim.components.kinematics._handler import handler_class
+from irsim.components.kinematics._presets import SURFACES
 from irsim.components.options import BehaviorOptions
 from irsim.options.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.model.actuation import MOST_CONTROLS, PER_CONTROL, per_control
@@ -244,6 +245,7 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
         zones=_zones(scenario),
         views=_views(scenario),
         targets=_targets(scenario),
+        grounds=_grounds(scenario),
     )
     world.after_arrival = AFTER_ARRIVAL[scenario.world.after_arrival]
     world.contacts = CONTACTS[scenario.world.contacts]
@@ -286,6 +288,18 @@ def _zones(scenario: ResolvedScenario) -> list[core.Part]:
         else:
             parts.append(core.Polygon(vertices=zone.points))
     return parts
+
+
+def _grounds(scenario: ResolvedScenario) -> list[core.Ground]:
+    """Build the ground of the areas that have one of their own."""
+    grounds = []
+    for index, zone in enumerate(scenario.world.zones):
+        if not zone.has_ground:
+            continue
+        surface = {"spread": 0.0, "traction": 1.0} if zone.surface is None else SURFACES[zone.surface].values
+        slip = {key: getattr(zone, key) for key in ("slip", "slip_std", "slip_time", "grip")}
+        grounds.append(core.Ground(zone=index, **slip, **surface))
+    return grounds
 
 
 def is_watching(record: ObjectRecord) -> bool:

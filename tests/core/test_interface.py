@@ -47,7 +47,7 @@ def test_wrong_options_are_refused() -> None:
     with pytest.raises(ValueError, match="steering"):
         core.AckerOptions(noise=True, alpha=[0] * 4, mode="steering", wheelbase=2, psi_max=0.5)
     with pytest.raises(TypeError, match="alpha"):
-        core.DiffOptions(noise=False, alpha=[0.1])
+        core.DiffOptions(noise=False, alpha=[0.1], track=0.3)
     with pytest.raises(ValueError, match="at least one part"):
         scene(robot(parts=[]))
     with pytest.raises(ValueError, match="interval"):

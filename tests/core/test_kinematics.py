@@ -102,7 +102,7 @@ def expected_deviation(drive: str, u: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize(
     ("drive", "options"),
     [
-        ("diff", core.DiffOptions(noise=True, alpha=[0.03, 0, 0, 0.03])),
+        ("diff", core.DiffOptions(noise=True, alpha=[0.03, 0, 0, 0.03], track=0.3)),
         ("omni", core.OmniOptions(noise=True, alpha=[0.03, 0.03])),
         ("omni_angular", core.OmniAngularOptions(noise=True, alpha=[0.03, 0.03, 0.03])),
         (
@@ -256,7 +256,7 @@ def test_a_circle_closes_exactly_and_euler_is_as_far_off_as_stated() -> None:
 
 
 def test_noise_bends_the_arc() -> None:
-    options = core.DiffOptions(noise=True, alpha=[0.03, 0, 0, 0.03])
+    options = core.DiffOptions(noise=True, alpha=[0.03, 0, 0, 0.03], track=0.3)
     world, state = exact_world(robot(drive=options), seeds=[5])
     apply(world, state, [0.8, 0.6])
     u = state.twist[0]

@@ -74,7 +74,7 @@ def test_spreads_are_kept(seed: int, position: float, heading: float, speed: flo
 
 def crowd(given=(), seeds=(3,)) -> tuple[core.World, core.State]:
     """Robots with noise, one at random, one that wanders; an obstacle whose shape is drawn."""
-    noisy = core.DiffOptions(noise=True, alpha=[0.03, 0.0, 0.0, 0.03])
+    noisy = core.DiffOptions(noise=True, alpha=[0.03, 0.0, 0.0, 0.03], track=0.3)
     place = random_placement(objects=[1], range_low=[2, 2, -3], range_high=[8, 8, 3], min_distance=0.0, attempts=1000)
     return scene(
         robot(drive=noisy, behavior=kernel("orca"), goals=[[9, 9]], pose=[1, 1, 0], sensors=[lidar(8, noise=True)]),

@@ -24,7 +24,7 @@ from tests.effort import for_all
 pytestmark = pytest.mark.every_python
 
 ALL = np.ones(1, np.uint8)
-NOISY = core.DiffOptions(noise=True, alpha=[0.03, 0.01, 0.01, 0.03])
+NOISY = core.DiffOptions(noise=True, alpha=[0.03, 0.01, 0.01, 0.03], track=0.3)
 
 
 def crowd(seeds=(3,), **options) -> tuple[core.World, core.State]:
@@ -261,5 +261,5 @@ def test_streams_have_names() -> None:
     assert sorted(core.STREAMS.values()) == list(range(len(core.STREAMS)))
     assert set(core.STREAMS) == {
         "placement", "shape", "goal", "motion", "sensor", "behavior", "planner", "map", "user",
-        "perturbation", "policy", "task", "actuation",
+        "perturbation", "policy", "task", "actuation", "slip",
     }  # fmt: skip

@@ -20,6 +20,7 @@ def skid(**options: Any) -> core.SkidSteerOptions:
     usual: dict[str, Any] = {
         "noise": False, "alpha": [0.03, 0.0, 0.0, 0.03], "believed_track": 0.6, "icr_left": 0.3, "icr_right": -0.3,
         "icr_ahead": 0.0, "traction_left": 1.0, "traction_right": 1.0, "speed_max": math.inf,
+        "track": 0.4,
     }  # fmt: skip
     return core.SkidSteerOptions(**{**usual, **options})
 
@@ -36,7 +37,7 @@ def test_one_step_by_hand() -> None:
 
 def test_on_the_ground_it_is_calibrated_for_it_moves_as_diff() -> None:
     controls = [[math.sin(0.1 * k), math.cos(0.2 * k)] for k in range(100)]
-    diff = core.DiffOptions(noise=False, alpha=[0.0] * 4)
+    diff = core.DiffOptions(noise=False, alpha=[0.0] * 4, track=0.3)
     ours = driven(skid(), [0, 0, 0, 0, 0], controls)[:, :3]
     np.testing.assert_allclose(ours, driven(diff, [0, 0, 0], controls), atol=1e-12)
 

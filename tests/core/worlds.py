@@ -15,7 +15,7 @@ from irsim.results.run import RunResult
 
 PI = math.pi
 DRIVES: dict[str, Any] = {
-    "diff": core.DiffOptions(noise=False, alpha=[0.03, 0.0, 0.0, 0.03]),
+    "diff": core.DiffOptions(noise=False, alpha=[0.03, 0.0, 0.0, 0.03], track=0.3),
     "omni": core.OmniOptions(noise=False, alpha=[0.03, 0.03]),
     "omni_angular": core.OmniAngularOptions(noise=False, alpha=[0.03, 0.03, 0.03]),
     "steer": core.AckerOptions(

@@ -37,7 +37,7 @@ BAD: list[tuple[list[Any], str, Path]] = [
     ([{"name": "empty", "rectangle": [4, 1, 4, 3]}], "range-order", (0, "rectangle")),
     ([{"name": "dot", "circle": {"center": [2, 2], "radius": 0}}], "out-of-range", (0, "circle", "radius")),
     ([{"name": "far", "rectangle": [0, 0, 1, 1e9]}], "too-large", (0,)),
-    ([{**DOOR, "solid": True}], "unknown-key", (0, "solid")),
+    ([{**DOOR, "locked": True}], "unknown-key", (0, "locked")),
 ]  # fmt: skip
 
 
@@ -81,6 +81,29 @@ def test_a_zone_outside_the_world_is_a_warning() -> None:
         ("warning", "zone-outside-world", ("world", "zones", 1))
     ]
     assert reading.scenario is not None
+
+
+@pytest.mark.parametrize(
+    ("ground", "drive", "told"),
+    [
+        ("slip: 0.2", "{name: diff}", None),
+        ("grip: 0.2", "{name: diff}", "only 'diff_dynamic' and 'single_track' do"),
+        ("grip: 0.2", "{name: single_track}", None),
+        ("surface: gravel", "{name: omni}", "only 'skid_steer' do"),
+        ("surface: gravel", "{name: skid_steer}", None),
+    ],
+)
+def test_ground_that_no_drive_feels_is_told(ground: str, drive: str, told: str | None) -> None:
+    text = f"world: {{zones: [{{name: wet, rectangle: [1, 1, 2, 2], {ground}}}]}}\nrobot: {{kinematics: {drive}}}\n"
+    found = [one for one in read(text).diagnostics if one.code == "ground-unfelt"]
+    assert found[0].message.endswith(told) if told else not found, found
+
+
+def test_a_line_has_no_ground() -> None:
+    reading = read({"world": {"zones": [{**DOOR, "slip": 0.2}]}})
+    assert [(d.severity, d.code, d.path[2:]) for d in reading.diagnostics] == [
+        ("error", "conflicting-keys", (0, "slip"))
+    ]
 
 
 def test_zones_do_not_change_what_objects_do() -> None:

@@ -50,7 +50,7 @@ def differential_kinematics(
         ValueError: An array has too few rows, or the integration is unknown.
     """
     _check(state=(state, 3), velocity=(velocity, 2))
-    drive = core.DiffOptions(noise=False, alpha=_alpha(alpha, _DEFAULT_ALPHA, noise))
+    drive = core.DiffOptions(noise=False, alpha=_alpha(alpha, _DEFAULT_ALPHA, noise), track=1.0)
     return _move(drive, state[:3], velocity[:2], step_time, noise, integration)
 
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
-__all__ = ["SKID_STEER", "VEHICLES", "Preset", "filled"]
+__all__ = ["SKID_STEER", "SURFACES", "VEHICLES", "Preset", "Surface", "filled"]
+
+Surface = Literal["floor", "asphalt", "grass", "gravel", "sand"]
+"""Names of grounds for skid steering."""
 
 
 @dataclass(frozen=True)
@@ -16,10 +19,12 @@ class Preset:
     Attributes:
         values: Key -> number.
         source: Where the numbers are from.
+        unverified: Whether they are assumptions, not measurements.
     """
 
     values: Mapping[str, float]
     source: str
+    unverified: bool = False
 
 
 def filled(data: Any, key: str, usual: str, presets: Mapping[str, Preset]) -> Any:
@@ -39,28 +44,47 @@ def filled(data: Any, key: str, usual: str, presets: Mapping[str, Preset]) -> An
     return {**data, **{k: v for k, v in presets[name].values.items() if data.get(k) is None}}
 
 
-def _tracks(apart: float) -> dict[str, float]:
-    half = round(apart / 2, 4)
-    return {"believed_track": 2 * half, "icr_left": half, "icr_right": -half}
+def _tracks(track: float, spread: float) -> dict[str, float]:
+    half = round(track * spread / 2, 4)
+    return {"believed_track": 2 * half, "icr_left": half, "icr_right": -half, "track": track}
 
 
 SKID_STEER = {
     "p3at": Preset(
-        _tracks(0.40 * 1.4662),
+        _tracks(0.40, 1.4662),
         "Pioneer 3-AT, 0.40 m wide, turns on the spot as if its tracks were 1.4662 times as far apart: Wang et al., "
         "Sensors 15 (2015) 9681, tables 1 and 3; read 2026-11-30",
     ),
     "jackal": Preset(
-        _tracks(0.37559 * 1.5),
+        _tracks(0.37559, 1.5),
         "Clearpath Jackal, wheels 0.37559 m apart and wheel_separation_multiplier 1.5: "
         "jackal_control/config/control.yaml of its maker; read 2026-11-30",
     ),
     "husky": Preset(
-        _tracks(0.5708 * 1.875),
+        _tracks(0.5708, 1.875),
         "Clearpath Husky, wheels 0.5708 m apart and wheel_separation_multiplier 1.875: "
         "husky_control/config/control.yaml of its maker; read 2026-11-30",
     ),
 }
+
+
+_ASSUMED = "assumed, not measured: published tracks as they turn are 1.3 to 2 times the distance of both sides"
+
+
+def _ground(spread: float, traction: float, source: str = _ASSUMED) -> Preset:
+    return Preset({"spread": spread, "traction": traction}, source, unverified=source == _ASSUMED)
+
+
+SURFACES = {
+    "floor": _ground(1.4662, 1.0, "Pioneer 3-AT on the floor of a laboratory: Wang et al., Sensors 15 (2015) 9681, "
+                     "tables 1 and 3; read 2026-11-30"),
+    "asphalt": _ground(1.6, 1.0),
+    "grass": _ground(1.8, 0.95),
+    "gravel": _ground(1.5, 0.93),
+    "sand": _ground(1.9, 0.85),
+}  # fmt: skip
+"""Grounds for skid steering: `spread` is the distance of both ICRs over the distance of the sides, `traction` the speed
+over ground per speed of a side."""
 
 
 def _car(

@@ -27,6 +27,7 @@ class Acker(KinematicsOptions):
     control_rows: ClassVar[tuple[str, ...]] = ("linear", "steer")
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "rad or rad/s")
     speeds: ClassVar[int] = 1
+    feels: ClassVar[tuple[str, ...]] = ("slip",)
     steered: ClassVar[bool] = True
     usual_colors: ClassVar[tuple[str, str] | None] = (ACKER_COLOR, OBSTACLE_COLOR)
     picture: ClassVar[str | None] = "car_green.png"

@@ -19,15 +19,16 @@ class DiffDynamic(KinematicsOptions):
 
     A controller asks both motors for the torques that would bring the speeds to the wanted ones within `response`. It
     gets at most `torque_max`, and what `voltage` drives against the voltage that a turning motor makes itself. So a
-    heavy robot starts and stops slowly, and its top speed follows from its motors. The wheels roll without slip. Each
-    step is integrated in small parts, whatever `world.integration`. The fourth and fifth state rows are the rates of
-    the left and the right wheel in rad/s. The usual numbers describe a base of 10 kg, no particular robot. Contacts
-    cannot push it.
+    heavy robot starts and stops slowly, and its top speed follows from its motors. The wheels roll without slip, except
+    on `world.zones` with `slip`, and their forces end at `friction` times the load of each. Each step is integrated in
+    small parts, whatever `world.integration`. The fourth and fifth state rows are the rates of the left and the right
+    wheel in rad/s. The usual numbers describe a base of 10 kg, no particular robot. Contacts cannot push it.
     """
 
     state_rows: ClassVar[tuple[str, ...]] = ("x", "y", "theta", "left", "right")
     speeds: ClassVar[int] = 1
     slips: ClassVar[bool] = True
+    feels: ClassVar[tuple[str, ...]] = ("slip", "grip")
     coasts: ClassVar[bool] = True
     usual_acce: ClassVar[tuple[float, ...]] = (2.0, 4.0)
 
@@ -60,6 +61,9 @@ class DiffDynamic(KinematicsOptions):
     """Turns of the motor per turn of the wheel."""
     response: Annotated[Seconds, Field(ge=0.001)] = 0.05
     """Time constant with which the controller of the speeds works."""
+    friction: Positive | None = None
+    """Coefficient of friction of the wheels: it limits the force of each to this share of half the weight, which
+    `grip` of a zone changes. Null is no limit; in a zone the coefficient is then `grip` itself."""
 
 
 KINEMATICS.register(DiffDynamic, kernel=core.DiffDynamicOptions)

@@ -22,6 +22,7 @@ class Omni(KinematicsOptions):
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "m/s")
 
     speeds: ClassVar[int] = 2
+    feels: ClassVar[tuple[str, ...]] = ("slip",)
     turns: ClassVar[bool] = False
     arrow: ClassVar[bool] = False
 

@@ -24,6 +24,7 @@ class OmniAngular(KinematicsOptions):
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "m/s", "rad/s")
 
     speeds: ClassVar[int] = 2
+    feels: ClassVar[tuple[str, ...]] = ("slip",)
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "omni_angular"}]}
 

@@ -36,6 +36,7 @@ class SingleTrack(KinematicsOptions):
     speeds: ClassVar[int] = 1
     steered: ClassVar[bool] = True
     slips: ClassVar[bool] = True
+    feels: ClassVar[tuple[str, ...]] = ("slip", "grip")
     coasts: ClassVar[bool] = True
     usual_acce: ClassVar[tuple[float, ...]] = (4.0, math.inf)
     usual_colors: ClassVar[tuple[str, str] | None] = (ACKER_COLOR, OBSTACLE_COLOR)
@@ -83,7 +84,7 @@ class SingleTrack(KinematicsOptions):
     height: Annotated[Meters, Field(ge=0)] | None = None
     """Height of the centre of mass, for the load that braking shifts."""
     friction: Positive | None = None
-    """Coefficient of friction of the tyres."""
+    """Coefficient of friction of the tyres; `grip` of a zone changes it, and the largest acceleration with it."""
     stiffness_front: Positive | None = None
     """Cornering stiffness of the front tyres per load [1/rad]."""
     stiffness_rear: Positive | None = None

@@ -28,6 +28,7 @@ class Tricycle(KinematicsOptions):
     control_rows: ClassVar[tuple[str, ...]] = ("linear", "steer")
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "rad or rad/s")
     speeds: ClassVar[int] = 1
+    feels: ClassVar[tuple[str, ...]] = ("slip",)
     steered: ClassVar[bool] = True
     pivots: ClassVar[bool] = True
     usual_vel_max: ClassVar[tuple[float, ...]] = (1.0, math.pi / 2)

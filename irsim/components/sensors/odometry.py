@@ -18,8 +18,10 @@ Spread = Annotated[Number, Field(ge=0, le=0.2)]
 class Odometry(DriftOptions):
     """Wheel odometry: the pose that encoders of two wheels add up to, from the true start on; it drifts.
 
-    The wheels roll as the body moves, without slip of their own. Systematic errors are as in UMBmark (Borenstein and
-    Feng 1996): unequal diameters and a wrong track. The sideways part of omnidirectional drives has the error of scale.
+    It follows the turns of the wheels, not the body: on `world.zones` with `slip` it reports the full way, of
+    `skid_steer` what its controller believes, and of `single_track` no slide sideways. Systematic errors are as in
+    UMBmark (Borenstein and Feng 1996): unequal diameters and a wrong track. The sideways part of omnidirectional drives
+    has the error of scale.
     """
 
     locates: ClassVar[bool] = True

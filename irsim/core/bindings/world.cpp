@@ -17,6 +17,7 @@ void bind_world(nb::module_& m) {
   bind_fields<Variation>(m, "Variation");
   bind_fields<Level>(m, "Level");
   bind_fields<View>(m, "View");
+  bind_fields<Ground>(m, "Ground");
   bind_fields<Fog>(m, "Fog");
   nb::class_<World>(m, "World")
       .def(
@@ -24,15 +25,17 @@ void bind_world(nb::module_& m) {
           [](World* self, double step_time, int collision_mode, double gravity, std::vector<ObjectSpec> objects,
              std::vector<Placement> placements, int copies, std::optional<Fog> fog,
              std::vector<Perturbation> perturbations, const std::vector<PartSpec>& zones, std::vector<View> views,
-             const std::vector<int>& targets) {
+             const std::vector<int>& targets, std::vector<Ground> grounds) {
             new (self) World(step_time, collision_mode, gravity, std::move(objects), std::move(placements), copies,
                              std::move(fog), std::move(perturbations),
-                             Zones(draw_outlines(zones, Draws({}, Stream::shape, 0))), std::move(views), targets);
+                             Zones(draw_outlines(zones, Draws({}, Stream::shape, 0)), std::move(grounds)),
+                             std::move(views), targets);
           },
           nb::kw_only(), nb::arg("step_time"), nb::arg("collision_mode"), nb::arg("gravity"), nb::arg("objects"),
           nb::arg("placements"), nb::arg("copies"), nb::arg("fog") = nb::none(),
           nb::arg("perturbations") = std::vector<Perturbation>(), nb::arg("zones") = std::vector<PartSpec>(),
-          nb::arg("views") = std::vector<View>(), nb::arg("targets") = std::vector<int>())
+          nb::arg("views") = std::vector<View>(), nb::arg("targets") = std::vector<int>(),
+          nb::arg("grounds") = std::vector<Ground>())
       .def_ro("copies", &World::copies)
       .def_ro("objects", &World::objects)
       .def_ro("step_time", &World::step_time)

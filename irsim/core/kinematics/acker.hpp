@@ -22,7 +22,9 @@ struct AckerOptions {
 
 inline void acker(const AckerOptions& options, const Motion& m) {
   const double wheelbase = options.wheelbase > 0.0 ? options.wheelbase : 1.0;
-  move(m, {m.control[0], 0.0}, m.control[0] * std::tan(m.extra[0]) / wheelbase);
+  const double slope = std::tan(m.extra[0]);
+  const double speed = m.footing == nullptr ? m.control[0] : m.control[0] * (1.0 - m.footing->slip);
+  move_on_ground(m, {m.control[0], 0.0}, m.control[0] * slope / wheelbase, {speed, 0.0}, speed * slope / wheelbase);
   // The wheels turn at the end of the period, whatever the integration.
   const double psi = options.mode == Steering::steer ? m.control[1] : m.extra[0] + m.control[1] * m.dt;
   m.extra[0] = clip(psi, -options.psi_max, options.psi_max);

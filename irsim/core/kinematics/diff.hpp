@@ -9,13 +9,22 @@ namespace irsim {
 struct DiffOptions {
   bool noise;
   std::array<double, 4> alpha;
+  double track;  // distance of the wheels [m]
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
-    return visit(field("noise", &DiffOptions::noise), field("alpha", &DiffOptions::alpha));
+    return visit(field("noise", &DiffOptions::noise), field("alpha", &DiffOptions::alpha),
+                 field("track", &DiffOptions::track));
   }
 };
 
-inline void diff(const DiffOptions&, const Motion& m) { move(m, {m.control[0], 0.0}, m.control[1]); }
+inline void diff(const DiffOptions& options, const Motion& m) {
+  const Vec2 speeds{m.control[0], m.control[1]}, ground = over_ground(speeds, 0.5 * options.track, m.footing);
+  move_on_ground(m, {speeds.x, 0.0}, speeds.y, {ground.x, 0.0}, ground.y);
+}
+
+inline std::array<Vec2, 2> wheels(const DiffOptions& options) {
+  return {{{0.0, 0.5 * options.track}, {0.0, -0.5 * options.track}}};
+}
 
 inline Rows rows(const DiffOptions&) { return {1, 1}; }
 

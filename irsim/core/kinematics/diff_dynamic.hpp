@@ -22,6 +22,7 @@ struct DiffDynamicOptions {
   double torque_constant;  // of a motor [N m/A] and [V s/rad]
   double gear;             // turns of the motor per turn of the wheel
   double response;         // time constant of the controller of speeds [s]
+  double friction;         // coefficient of the wheels, may be infinite: they hold every force
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
     using O = DiffDynamicOptions;
@@ -30,41 +31,50 @@ struct DiffDynamicOptions {
                  field("drag", &O::drag), field("turn_drag", &O::turn_drag), field("torque_max", &O::torque_max),
                  field("voltage", &O::voltage), field("resistance", &O::resistance),
                  field("torque_constant", &O::torque_constant), field("gear", &O::gear),
-                 field("response", &O::response));
+                 field("response", &O::response), field("friction", &O::friction));
+  }
+
+  /// The largest torque of a wheel that the ground bears [N m]. Without a coefficient of the wheels, the grip is one.
+  double borne(const Footing* footing, int wheel) const {
+    constexpr double kGravity = 9.81;  // [m/s^2]
+    const double grip = footing == nullptr ? 1.0 : footing[wheel].grip;
+    const double coefficient = std::isfinite(friction) || grip == 1.0 ? friction * grip : grip;
+    return 0.5 * coefficient * mass * kGravity * wheel_radius;
   }
 
   /// The torque that a wheel gets of a wanted one while it turns at a rate [N m].
-  double possible(double wanted, double rate) const {
+  double possible(double wanted, double rate, double most) const {
     const double back = torque_constant * gear * rate, scale = torque_constant * gear / resistance;
     const double low = scale * (-voltage - back), high = scale * (voltage - back);
-    return clip(clip(wanted, low, high), -torque_max, torque_max);
+    return clip(clip(wanted, low, high), -most, most);
   }
 };
 
 /// Changes of forward speed and yaw rate [m/s^2], [rad/s^2]: mass * v' = sum of torques / radius - drag * v, and the
 /// same of the turn. The controller asks for the torques with which both would come to their wanted values
 /// exponentially.
-inline Vec2 acceleration(const DiffDynamicOptions& o, Vec2 speeds, Vec3 control) {
+inline Vec2 acceleration(const DiffDynamicOptions& o, Vec2 speeds, Vec3 control, const std::array<double, 2>& most) {
   const double v = speeds.x, w = speeds.y, half = 0.5 * o.track;
   const double force = o.mass * (control[0] - v) / o.response + o.drag * v;
   const double moment = o.inertia * (control[1] - w) / o.response + o.turn_drag * w;
   const double both = 0.5 * force * o.wheel_radius, apart = 0.5 * moment * o.wheel_radius / half;
-  const double left = o.possible(both - apart, (v - half * w) / o.wheel_radius);
-  const double right = o.possible(both + apart, (v + half * w) / o.wheel_radius);
+  const double left = o.possible(both - apart, (v - half * w) / o.wheel_radius, most[0]);
+  const double right = o.possible(both + apart, (v + half * w) / o.wheel_radius, most[1]);
   return {((left + right) / o.wheel_radius - o.drag * v) / o.mass,
           ((right - left) * half / o.wheel_radius - o.turn_drag * w) / o.inertia};
 }
 
-/// Wheels roll without slip. The motion is integrated in parts by the classical fourth-order Runge-Kutta method,
-/// whatever the integration. The extra rows are the rates of the left and the right wheel [rad/s].
+/// Wheels roll without slip, except where zones say otherwise. The motion is integrated in parts by the classical
+/// fourth-order Runge-Kutta method, whatever the integration. The extra rows are the rates of the left and the right
+/// wheel [rad/s].
 inline void diff_dynamic(const DiffDynamicOptions& o, const Motion& m) {
   constexpr double kLargest = 0.01, kMostParts = 10000.0;  // largest part [s]
   double &left = m.extra[0], &right = m.extra[1];
   const double half = 0.5 * o.track;
   Vec2 speeds{0.5 * o.wheel_radius * (left + right), 0.5 * o.wheel_radius * (right - left) / half};
   if (!(m.dt > 0.0)) {
-    const Vec2 v = m.direction * speeds.x;
-    m.twist = {{v.x, v.y, speeds.y}};
+    const Vec2 ground = over_ground(speeds, half, m.footing), v = m.direction * ground.x;
+    m.twist = {{v.x, v.y, ground.y}};
     return;
   }
   // Parts are short against every time constant.
@@ -74,19 +84,27 @@ inline void diff_dynamic(const DiffDynamicOptions& o, const Motion& m) {
   const int parts = static_cast<int>(clip(std::ceil(m.dt * std::max(1.0 / kLargest, fast) - 1e-9), 1.0, kMostParts));
   const double dt = m.dt / parts;
   const Pose before = m.pose;
+  const std::array<double, 2> most = {
+      {std::min(o.torque_max, o.borne(m.footing, 0)), std::min(o.torque_max, o.borne(m.footing, 1))}};
   double turned = 0.0;
   Vec2 way;
   for (int k = 0; k < parts; ++k) {
-    const Vec2 a = acceleration(o, speeds, m.control), b = acceleration(o, speeds + a * (0.5 * dt), m.control);
-    const Vec2 c = acceleration(o, speeds + b * (0.5 * dt), m.control), d = acceleration(o, speeds + c * dt, m.control);
+    const Vec2 a = acceleration(o, speeds, m.control, most);
+    const Vec2 b = acceleration(o, speeds + a * (0.5 * dt), m.control, most);
+    const Vec2 c = acceleration(o, speeds + b * (0.5 * dt), m.control, most);
+    const Vec2 d = acceleration(o, speeds + c * dt, m.control, most);
     const Vec2 next = speeds + (a + b * 2.0 + c * 2.0 + d) * (dt / 6.0);
     const Vec2 middle = (speeds + next) * 0.5 + (a - d) * (dt / 8.0);
     // Simpson's rule, for the turn and for the way, whose direction turns, too.
-    const double half_turn = dt / 24.0 * (5.0 * speeds.y + 8.0 * middle.y - next.y);
-    const double turn = dt / 6.0 * (speeds.y + 4.0 * middle.y + next.y);
-    way = way + (unit(turned) * speeds.x + unit(turned + half_turn) * (4.0 * middle.x) + unit(turned + turn) * next.x) *
+    const Vec2 first = over_ground(speeds, half, m.footing), second = over_ground(middle, half, m.footing),
+               third = over_ground(next, half, m.footing);
+    const double half_turn = dt / 24.0 * (5.0 * first.y + 8.0 * second.y - third.y);
+    const double turn = dt / 6.0 * (first.y + 4.0 * second.y + third.y);
+    way = way + (unit(turned) * first.x + unit(turned + half_turn) * (4.0 * second.x) + unit(turned + turn) * third.x) *
                     (dt / 6.0);
     turned += turn;
+    const Vec2 wheels = (speeds + middle * 4.0 + next) * (1.0 / 6.0), body = over_ground(wheels, half, m.footing);
+    add_unmoved(m, {wheels.x, 0.0}, wheels.y, {body.x, 0.0}, body.y, dt);
     speeds = next;
   }
   const Vec2 moved = rotate(way, m.direction);
@@ -94,6 +112,10 @@ inline void diff_dynamic(const DiffDynamicOptions& o, const Motion& m) {
   m.pose.theta = wrap(before.theta + turned);
   left = (speeds.x - half * speeds.y) / o.wheel_radius, right = (speeds.x + half * speeds.y) / o.wheel_radius;
   set_mean_twist(m, before, turned);
+}
+
+inline std::array<Vec2, 2> wheels(const DiffDynamicOptions& o) {
+  return {{{0.0, 0.5 * o.track}, {0.0, -0.5 * o.track}}};
 }
 
 inline Rows rows(const DiffDynamicOptions&) { return {1, 1, 2, true}; }

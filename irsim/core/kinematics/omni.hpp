@@ -15,7 +15,12 @@ struct OmniOptions {
   }
 };
 
-inline void omni(const OmniOptions&, const Motion& m) { translate(m, {m.control[0], m.control[1]}, 0.0); }
+inline void omni(const OmniOptions&, const Motion& m) {
+  const Vec2 wheels{m.control[0], m.control[1]};
+  const Vec2 body = m.footing == nullptr ? wheels : wheels * (1.0 - m.footing->slip);
+  translate(m, body, 0.0);
+  add_unmoved(m, wheels, 0.0, body, 0.0, m.dt);
+}
 
 inline Rows rows(const OmniOptions&) { return {2, -1}; }
 

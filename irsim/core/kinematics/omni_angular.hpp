@@ -16,7 +16,9 @@ struct OmniAngularOptions {
 };
 
 inline void omni_angular(const OmniAngularOptions&, const Motion& m) {
-  move(m, {m.control[0], m.control[1]}, m.control[2]);
+  const Vec2 wheels{m.control[0], m.control[1]};
+  const double kept = m.footing == nullptr ? 1.0 : 1.0 - m.footing->slip;
+  move_on_ground(m, wheels, m.control[2], wheels * kept, m.control[2] * kept);
 }
 
 inline Rows rows(const OmniAngularOptions&) { return {2, 2}; }

@@ -63,10 +63,25 @@ constexpr double kRolling = 0.5;   // up to this speed tyres do not slip, and ba
 constexpr double kSpin = 0.5;      // from this slip angle on, angles are no longer small [rad]
 constexpr double kSlipping = 1.0;  // from this speed on the dynamic model alone counts [m/s]
 
+/// What the ground does to a car.
+struct CarFooting {
+  double kept = 1.0;               // speed over ground per speed of the wheels
+  double front = 1.0, rear = 1.0;  // factors on the friction of the tyres
+
+  /// Factor on the largest acceleration, which all wheels share.
+  double pull() const { return std::min(1.0, 0.5 * (front + rear)); }
+};
+
+inline CarFooting car_footing(const Footing* footing) {
+  if (footing == nullptr) return {};
+  return {1.0 - footing[1].slip, footing[0].grip, footing[1].grip};
+}
+
 /// The acceleration that the engine, the brakes and the limits of speed leave of a wanted one [m/s^2].
-inline double possible(const SingleTrackOptions& o, double speed, double wanted) {
+inline double possible(const SingleTrackOptions& o, double speed, double wanted, double pull = 1.0) {
   if ((speed <= o.speed_min && wanted <= 0.0) || (speed >= o.speed_max && wanted >= 0.0)) return 0.0;
-  return clip(wanted, -o.acce_max, speed > o.speed_switch ? o.acce_max * o.speed_switch / speed : o.acce_max);
+  const double most = o.acce_max * pull;
+  return clip(wanted, -most, std::min(most, speed > o.speed_switch ? o.acce_max * o.speed_switch / speed : o.acce_max));
 }
 
 /// Yaw rate and slip angle of wheels that roll where they point.
@@ -78,12 +93,12 @@ inline Lateral rolling(const SingleTrackOptions& o, double speed, double psi) {
 /// The equations at a speed, a steering angle and an acceleration. An axle whose tyres slide at `now`, or that
 /// spins, gives a constant force instead of one that grows with the slip.
 inline LateralRates lateral_rates(const SingleTrackOptions& o, double speed, double psi, double acceleration,
-                                  const Lateral& now) {
+                                  const Lateral& now, const CarFooting& ground = {}) {
   constexpr double kGravity = 9.81;  // [m/s^2]
   const double length = o.front + o.rear, arm = o.mass / o.inertia;
   const double ahead = speed * std::cos(now.slip), aside = speed * std::sin(now.slip);
-  const auto axle = [&](double load, double stiffness, double place, double angle, LateralRates& out) {
-    const double grip = o.friction * std::max(0.0, load) / length, give = grip * stiffness;  // per mass [m/s^2]
+  const auto axle = [&](double load, double stiffness, double place, double angle, double hold, LateralRates& out) {
+    const double grip = o.friction * hold * std::max(0.0, load) / length, give = grip * stiffness;  // per mass [m/s^2]
     const double slide = angle - now.slip - place * now.yaw / speed;
     const bool slides =
         o.tyres == Tyres::saturating && (std::fabs(now.slip) > kSpin || std::fabs(slide) * stiffness > 1.0);
@@ -98,14 +113,14 @@ inline LateralRates lateral_rates(const SingleTrackOptions& o, double speed, dou
     out.rates.c -= place * give / (speed * speed), out.rates.d -= give / speed;
   };
   LateralRates out{{0.0, 0.0, -1.0, 0.0}, {0.0, 0.0}};
-  axle(kGravity * o.rear - acceleration * o.height, o.stiffness_front, o.front, psi, out);
-  axle(kGravity * o.front + acceleration * o.height, o.stiffness_rear, -o.rear, 0.0, out);
+  axle(kGravity * o.rear - acceleration * o.height, o.stiffness_front, o.front, psi, ground.front, out);
+  axle(kGravity * o.front + acceleration * o.height, o.stiffness_rear, -o.rear, 0.0, ground.rear, out);
   return out;
 }
 
 /// One part of a period.
 struct SingleTrackStep {
-  double speed, psi;  // at its middle [m/s], [rad]
+  double speed, psi;  // at its middle, over ground [m/s], [rad]
   double turn;        // [rad]
   double slip;        // at its middle [rad]
 };
@@ -123,19 +138,22 @@ inline Lateral blended(const SingleTrackOptions& o, double speed, double psi, co
   return {share * tyres.yaw + (1.0 - share) * wheels.yaw, share * tyres.slip + (1.0 - share) * wheels.slip};
 }
 
-/// Advance steering angle, speed, yaw rate and slip angle.
-inline SingleTrackStep single_track_part(const SingleTrackOptions& o, Vec3 control, double* extra, double dt) {
-  double &psi = extra[0], &speed = extra[1];
-  const double psi_before = psi, speed_before = speed;
+/// Advance steering angle, speed, yaw rate and slip angle. The speed is that of the wheels.
+inline SingleTrackStep single_track_part(const SingleTrackOptions& o, Vec3 control, double* extra, double dt,
+                                         const CarFooting& ground) {
+  double &psi = extra[0], &rolled = extra[1];
+  const double psi_before = psi, rolled_before = rolled;
   double rate = 0.0;
   const bool by_angle = o.mode == SingleTrackMode::steer;
   turn_wheels({o.steer_rate, kInfinity, 0.0}, by_angle ? Steering::steer : Steering::angular, control[1], o.psi_max,
               psi, rate, dt);
-  const double wanted = o.mode == SingleTrackMode::acceleration ? control[0] : (control[0] - speed) / dt;
-  const double acceleration = possible(o, speed + 0.5 * dt * possible(o, speed, wanted), wanted);
-  speed = o.mode == SingleTrackMode::acceleration
-              ? clip(speed + acceleration * dt, std::min(speed, o.speed_min), std::max(speed, o.speed_max))
-              : speed + acceleration * dt;
+  const double wanted = o.mode == SingleTrackMode::acceleration ? control[0] : (control[0] - rolled) / dt;
+  const double pull = ground.pull();
+  const double acceleration = possible(o, rolled + 0.5 * dt * possible(o, rolled, wanted, pull), wanted, pull);
+  rolled = o.mode == SingleTrackMode::acceleration
+               ? clip(rolled + acceleration * dt, std::min(rolled, o.speed_min), std::max(rolled, o.speed_max))
+               : rolled + acceleration * dt;
+  const double speed = rolled * ground.kept, speed_before = rolled_before * ground.kept;
   SingleTrackStep step{0.5 * (speed_before + speed), 0.5 * (psi_before + psi), 0.0, 0.0};
   if (o.model == SingleTrackModel::kinematic) {
     step.turn = step.speed * std::tan(step.psi) / o.wheelbase * dt;
@@ -149,7 +167,7 @@ inline SingleTrackStep single_track_part(const SingleTrackOptions& o, Vec3 contr
     step.slip = rolling(o, step.speed, step.psi).slip;
   } else {
     const auto advanced = [&](Lateral from) {
-      const LateralRates change = lateral_rates(o, step.speed, step.psi, (speed - speed_before) / dt, from);
+      const LateralRates change = lateral_rates(o, step.speed, step.psi, (speed - speed_before) / dt, from, ground);
       double y[2] = {from.yaw, from.slip};
       advance_linear(change.rates, change.input, 0.5 * dt, y);
       return Lateral{y[0], y[1]};
@@ -174,10 +192,15 @@ inline void single_track(const SingleTrackOptions& o, const Motion& m) {
   const double back =
       dynamic ? o.rear : 0.0;  // of the reference point, the rear axle, from where the slip angle is [m]
   double* extra = m.extra;
+  const CarFooting ground = car_footing(m.footing);
+  const auto slip_angle = [&] {
+    return dynamic ? blended(o, extra[1] * ground.kept, extra[0], {extra[2], extra[3]}).slip : 0.0;
+  };
   if (!(m.dt > 0.0)) {
-    const Lateral now = dynamic ? blended(o, extra[1], extra[0], {extra[2], extra[3]})
-                                : Lateral{extra[1] * std::tan(extra[0]) / o.wheelbase, 0.0};
-    const Vec2 v = rotate({extra[1] * std::cos(now.slip), extra[1] * std::sin(now.slip) - back * now.yaw}, m.direction);
+    const double speed = extra[1] * ground.kept;
+    const Lateral now = dynamic ? blended(o, speed, extra[0], {extra[2], extra[3]})
+                                : Lateral{speed * std::tan(extra[0]) / o.wheelbase, 0.0};
+    const Vec2 v = rotate({speed * std::cos(now.slip), speed * std::sin(now.slip) - back * now.yaw}, m.direction);
     m.twist = {{v.x, v.y, now.yaw}};
     return;
   }
@@ -187,13 +210,19 @@ inline void single_track(const SingleTrackOptions& o, const Motion& m) {
   Vec2 centre = before.position() + m.direction * back;
   double turned = 0.0;
   for (int k = 0; k < parts; ++k) {
-    const double slip = dynamic ? blended(o, extra[1], extra[0], {extra[2], extra[3]}).slip : 0.0;
-    const SingleTrackStep step = single_track_part(o, m.control, extra, dt);
-    const double slip_after = dynamic ? blended(o, extra[1], extra[0], {extra[2], extra[3]}).slip : 0.0;
-    const double bend = step.turn + slip_after - slip;
+    const double slip = slip_angle();
+    const SingleTrackStep step = single_track_part(o, m.control, extra, dt, ground);
+    const double bend = step.turn + slip_angle() - slip;
     centre =
         centre + rotate(m.direction, unit(turned + 0.5 * step.turn + step.slip)) * (step.speed * dt * sinc(0.5 * bend));
     turned += step.turn;
+    if (ground.kept > 0.0) {  // the rear wheels turn as fast as they drive ahead, and do not feel a slide sideways
+      const double ahead = step.speed * std::cos(step.slip), yaw = step.turn / dt;
+      add_unmoved(m, {ahead / ground.kept, 0.0}, yaw / ground.kept,
+                  {ahead, step.speed * std::sin(step.slip) - back * yaw}, yaw, dt);
+    } else {
+      add_unmoved(m, {extra[1], 0.0}, 0.0, {}, 0.0, dt);
+    }
   }
   const Vec2 heading = rotate(m.direction, unit(turned));
   m.pose.x = centre.x - heading.x * back, m.pose.y = centre.y - heading.y * back;
@@ -201,7 +230,9 @@ inline void single_track(const SingleTrackOptions& o, const Motion& m) {
   set_mean_twist(m, before, turned);
 }
 
-inline Rows rows(const SingleTrackOptions&) { return {1, -1, 4, true}; }
+inline std::array<Vec2, 2> wheels(const SingleTrackOptions& o) { return {{{o.front + o.rear, 0.0}, {0.0, 0.0}}}; }
+
+inline Rows rows(const SingleTrackOptions& o) { return {1, -1, 4, true, o.model == SingleTrackModel::dynamic}; }
 
 inline Vec3 deviation(const SingleTrackOptions& o, Vec3 control) { return velocity_deviation(o.alpha, control); }
 

@@ -14,14 +14,16 @@ struct SkidSteerOptions {
   double icr_ahead;                      // ahead of the reference point at which the body turns [m]
   double traction_left, traction_right;  // speed over ground per speed of each track [1]
   double speed_max;                      // of a track [m/s], may be infinite
+  double track;                          // distance of the tracks, where each touches the ground [m]
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
-    return visit(
-        field("noise", &SkidSteerOptions::noise), field("alpha", &SkidSteerOptions::alpha),
-        field("believed_track", &SkidSteerOptions::believed_track), field("icr_left", &SkidSteerOptions::icr_left),
-        field("icr_right", &SkidSteerOptions::icr_right), field("icr_ahead", &SkidSteerOptions::icr_ahead),
-        field("traction_left", &SkidSteerOptions::traction_left),
-        field("traction_right", &SkidSteerOptions::traction_right), field("speed_max", &SkidSteerOptions::speed_max));
+    return visit(field("noise", &SkidSteerOptions::noise), field("alpha", &SkidSteerOptions::alpha),
+                 field("believed_track", &SkidSteerOptions::believed_track),
+                 field("icr_left", &SkidSteerOptions::icr_left), field("icr_right", &SkidSteerOptions::icr_right),
+                 field("icr_ahead", &SkidSteerOptions::icr_ahead),
+                 field("traction_left", &SkidSteerOptions::traction_left),
+                 field("traction_right", &SkidSteerOptions::traction_right),
+                 field("speed_max", &SkidSteerOptions::speed_max), field("track", &SkidSteerOptions::track));
   }
 };
 
@@ -34,12 +36,27 @@ inline void skid_steer(const SkidSteerOptions& options, const Motion& m) {
   const double fastest = std::max(std::fabs(left), std::fabs(right));
   if (fastest > options.speed_max) left *= options.speed_max / fastest, right *= options.speed_max / fastest;
   m.extra[0] = left, m.extra[1] = right;
-  const double l = options.traction_left * left, r = options.traction_right * right;
-  const double apart = options.icr_left - options.icr_right, rate = (r - l) / apart;
-  move(m, {(r * options.icr_left - l * options.icr_right) / apart, -options.icr_ahead * rate}, rate);
+  double icr_left = options.icr_left, icr_right = options.icr_right;
+  double traction_left = options.traction_left, traction_right = options.traction_right;
+  if (m.footing != nullptr) {
+    const Footing &under_left = m.footing[0], &under_right = m.footing[1];
+    if (under_left.spread > 0.0)
+      icr_left = 0.5 * under_left.spread * options.track, traction_left = under_left.traction;
+    if (under_right.spread > 0.0)
+      icr_right = -0.5 * under_right.spread * options.track, traction_right = under_right.traction;
+    traction_left *= 1.0 - under_left.slip, traction_right *= 1.0 - under_right.slip;
+  }
+  const double l = traction_left * left, r = traction_right * right;
+  const double apart = icr_left - icr_right, rate = (r - l) / apart;
+  move_on_ground(m, {0.5 * (left + right), 0.0}, (right - left) / options.believed_track,
+                 {(r * icr_left - l * icr_right) / apart, -options.icr_ahead * rate}, rate);
 }
 
-inline Rows rows(const SkidSteerOptions&) { return {1, 1, 2}; }
+inline std::array<Vec2, 2> wheels(const SkidSteerOptions& options) {
+  return {{{0.0, 0.5 * options.track}, {0.0, -0.5 * options.track}}};
+}
+
+inline Rows rows(const SkidSteerOptions&) { return {1, 1, 2, false, true}; }
 
 inline Vec3 deviation(const SkidSteerOptions& options, Vec3 control) {
   return velocity_deviation(options.alpha, control);

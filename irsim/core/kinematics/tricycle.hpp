@@ -35,10 +35,13 @@ inline SteeringGear gear_of(const TricycleOptions& options) {
 /// body turns about the middle of its rear axle.
 inline void tricycle(const TricycleOptions& options, const Motion& m) {
   const double wheelbase = options.wheelbase > 0.0 ? options.wheelbase : 1.0, speed = m.control[0];
+  const double kept = m.footing == nullptr ? 1.0 : 1.0 - m.footing->slip;
   const auto roll = [&](const Motion& part, double psi) {
     // The cosine of a quarter turn is a rounding error.
     const double ahead = std::fabs(psi) < 0.5 * kPi ? speed * std::cos(psi) : 0.0;
-    move(part, {ahead, 0.0}, speed * std::sin(psi) / wheelbase);
+    const double turn = speed * std::sin(psi) / wheelbase;
+    move(part, {ahead * kept, 0.0}, turn * kept);
+    add_unmoved(m, {ahead, 0.0}, turn, {ahead * kept, 0.0}, turn * kept, part.dt);
   };
   const SteeringGear gear = gear_of(options);
   double &psi = m.extra[0], &rate = m.extra[1];
@@ -61,6 +64,11 @@ inline void tricycle(const TricycleOptions& options, const Motion& m) {
     direction = unit(m.pose.theta);
   }
   set_mean_twist(m, before, turn);
+}
+
+inline std::array<Vec2, 2> wheels(const TricycleOptions& options) {
+  const Vec2 front{options.wheelbase > 0.0 ? options.wheelbase : 1.0, 0.0};
+  return {{front, front}};
 }
 
 inline Rows rows(const TricycleOptions&) { return {1, -1, 2}; }

@@ -73,8 +73,10 @@ void integrate(const World& world, State& state, int w, int object) {
       const auto normals = draws.normals(static_cast<std::uint64_t>(state.count[w]));
       for (int c = 0; c < 3; ++c) u[c] += sigma[c] * normals[c];
     }
+    if (!world.zones.grounds.empty()) feel_ground(world, state, row);
     run(drive, Motion{state.pose[row], &state.extra[static_cast<std::size_t>(row) * state.extra_rows], state.twist[row],
-                      state.heading(row), u, world.step_time, world.integration});
+                      state.heading(row), u, world.step_time, world.integration, state.footing(world, row),
+                      world.wheels_slip ? &state.underfoot[row].unmoved : nullptr});
     Pose& pose = state.pose[row];
     pose.theta = into_range(pose.theta, world.angle_low[object], world.angle_high[object]);
   });

@@ -2,7 +2,8 @@
 // and zones.
 #pragma once
 
-#include "geometry/predicates.hpp"
+#include <algorithm>
+
 #include "integration.hpp"
 #include "sensing.hpp"
 
@@ -13,12 +14,7 @@ constexpr int kGaugeMemory = 4;
 
 /// Whether a point is in one of some zones.
 inline bool in_zones(const World& world, const std::vector<int>& zones, Vec2 at) {
-  return std::any_of(zones.begin(), zones.end(), [&](int zone) {
-    const Footprint area = world.zones.footprint(zone);
-    const Part& part = area.parts[0];
-    if (part.kind == Kind::circle) return squared(at - *area.vertices) <= part.radius * part.radius;
-    return part.kind == Kind::polygon && inside_ring(area.vertices + part.first, part.last - part.first, at);
-  });
+  return std::any_of(zones.begin(), zones.end(), [&](int zone) { return world.zones.covers(zone, at); });
 }
 
 /// The motion of a body since the last step, in its own frame: an arc of constant speed and yaw rate.

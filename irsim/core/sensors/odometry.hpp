@@ -1,4 +1,5 @@
-// Wheel odometry: the pose that the turns of two wheels add up to, as the robot believes its wheels to be.
+// Wheel odometry: the pose that the turns of two wheels add up to, as the robot believes its wheels to be. They turn as
+// the body moves, and by what they slip.
 //
 // Systematic errors: Borenstein, Feng: Measurement and Correction of Systematic Odometry Errors in Mobile Robots (IEEE
 // Trans. Robotics and Automation 12, 1996): unequal wheel diameters E_d and a wrong track E_b.
@@ -33,14 +34,19 @@ struct OdometryOptions {
 inline std::vector<double> beams(const OdometryOptions&) { return {}; }
 /// x, y, heading; speeds ahead, aside and yaw rate; ticks, or turns, of the left and the right wheel.
 inline int readings(const OdometryOptions&) { return 8; }
-/// The believed pose, and the turns of both wheels.
-inline int memory(const OdometryOptions&) { return kGaugeMemory + 5; }
+/// The believed pose, the turns of both wheels, and `Underfoot::unmoved`.
+inline int memory(const OdometryOptions&) { return kGaugeMemory + 8; }
 
 inline void odometry(const OdometryOptions& o, const Sensing& s) {
   Travel travel;
   const Due due = take_note(s, travel);
   if (due == Due::no) return;
-  double *const pose = s.memory + kGaugeMemory, *const turns = pose + 3;
+  double *const pose = s.memory + kGaugeMemory, *const turns = pose + 3, *const unmoved = turns + 2;
+  if (s.world.wheels_slip) {
+    const Vec3 now = s.state.underfoot[s.w * s.world.objects + s.mount.object].unmoved;
+    travel.ahead += now[0] - unmoved[0], travel.aside += now[1] - unmoved[1], travel.turn += now[2] - unmoved[2];
+    for (int k = 0; k < 3; ++k) unmoved[k] = now[k];
+  }
   if (due == Due::start) {
     pose[0] = s.pose.x, pose[1] = s.pose.y, pose[2] = s.pose.theta;
     turns[0] = turns[1] = 0.0;

@@ -47,6 +47,7 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   const std::size_t old_e = static_cast<std::size_t>(old_row) * from.extra_rows;
   std::copy_n(&from.extra[old_e], both, &to.extra[e]);
   std::copy_n(&from.initial_extra[old_e], both, &to.initial_extra[e]);
+  if (to.underfoot.size > 0) to.underfoot[row] = from.underfoot.size > 0 ? from.underfoot[old_row] : Underfoot{};
   to.sync_goal(row);
   to.overshot[row] = from.overshot[old_row];
   to.believes_arrived[row] = from.believes_arrived[old_row];

@@ -107,7 +107,7 @@ struct Walk {
     all(s.direction, s.direction_of, s.goals, s.routes, s.target, s.opinions, s.detours, s.tied, s.goal_draws);
     all(s.before, s.overshot, s.initial_pose, s.initial_extra, s.initial_control, s.history, s.standings, s.fresh);
     all(s.readings, s.memory);
-    all(s.event_count, s.scenes, s.actuated, s.queue, s.delay_scale, s.lag_scale);
+    all(s.event_count, s.scenes, s.actuated, s.underfoot, s.queue, s.delay_scale, s.lag_scale);
   }
 
   /// The body-frame geometry of a world; the cells of maps are given by their number among `grids`.

@@ -78,6 +78,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       commanded(rows),
       drive(rows),
       actuated(world.actuators.empty() ? 0 : rows),
+      underfoot(world.wheels_slip ? rows : 0),
       contact_time(rows),
       air_time(rows),
       given(rows),
@@ -192,6 +193,7 @@ void restart_row(const World& world, State& state, int row) {
   state.commanded[row] = {};
   state.drive[row] = world.dynamics[i].driven ? state.control[row] : Vec3{};
   if (world.has_actuators[i]) rest_at(world, state, row, state.control[row]);
+  if (world.wheels_slip) state.underfoot[row] = {};
   state.contact_time[row] = state.air_time[row] = 0.0;
   state.touching[row] = 0;
   state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;
@@ -332,7 +334,8 @@ Vec2 velocity_of_control(const World& world, const State& state, int row, Vec3 c
     Pose pose = state.pose[row];
     const double* extra = &state.extra[static_cast<std::size_t>(row) * state.extra_rows];
     scratch.assign(extra, extra + state.extra_rows);
-    run(drive, Motion{pose, scratch.data(), twist, state.heading(row), control, 0.0, world.integration});
+    run(drive, Motion{pose, scratch.data(), twist, state.heading(row), control, 0.0, world.integration,
+                      state.footing(world, row)});
   });
   return {twist[0], twist[1]};
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "footing.hpp"
 #include "footprints/detour.hpp"
 #include "orca/opinions.hpp"
 #include "parallel.hpp"
@@ -53,6 +54,7 @@ struct State {
   Array<Vec2> commanded;                 // velocity that the caller last asked a row to follow, world frame [m/s]
   Array<Vec3> drive;                     // controls of the drives before contacts change them, command frame
   Array<Actuated> actuated;              // (R,), empty if no object has actuators
+  Array<Underfoot> underfoot;            // (R,), empty if no wheels slip
   Array<double> contact_time, air_time;  // time for which an object has touched something, or nothing [s]
   Array<std::uint8_t> given, arrived, collided, stopped;
   Array<std::uint8_t> believes_arrived;  // of rows that go by an estimate: whether they rest at what they take for it
@@ -122,6 +124,10 @@ struct State {
   /// The route that a row follows; null without one. Routes avoid static objects; behaviors only keep
   /// `Route::wall_radius` off them.
   const Route* route_of(int row) const { return routes.empty() || routes[row].path.empty() ? nullptr : &routes[row]; }
+  /// What the ground does to the two wheels of a row; null if no zone has ground of its own.
+  const Footing* footing(const World& world, int row) const {
+    return world.zones.grounds.empty() ? nullptr : underfoot[row].wheel.data();
+  }
   /// Cosine and sine of the heading of a row.
   Vec2 heading(int row) const { return direction_of[row] == pose[row].theta ? direction[row] : unit(pose[row].theta); }
   Footprint footprint(const World& world, int w, int object) const {

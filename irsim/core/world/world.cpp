@@ -208,6 +208,7 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
       perturbations(std::move(perturbations_)),
       zones(std::move(zones_)),
       views(std::move(views_)),
+      wheels_slip(!zones.grounds.empty()),
       is_target(objects, 0) {
   if (copies < 0) throw std::invalid_argument("copies must not be negative");
   for (const View& view : views) {
@@ -267,7 +268,10 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     range_low.push_back(pose_of(s.range_low));
     range_high.push_back(pose_of(s.range_high));
     extra_rows = std::max(extra_rows, static_cast<int>(s.extra.size()));
-    with(s.drive, [&](const auto& options) { extra_rows = std::max(extra_rows, rows(options).inner); });
+    with(s.drive, [&](const auto& options) {
+      extra_rows = std::max(extra_rows, rows(options).inner);
+      wheels_slip = wheels_slip || rows(options).slides;
+    });
     (s.is_static ? fixed_objects : moving).push_back(i);
     if (s.role == 0) robots.push_back(i);
     if (!s.unobstructed) visible.push_back(i);

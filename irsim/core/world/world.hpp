@@ -127,7 +127,8 @@ struct World {
   std::vector<Perturbation> perturbations;       // of different objects, static ones first
   std::vector<Level> levels;                     // what varies between scenes; empty if nothing does
   std::vector<std::shared_ptr<World>> variants;  // the same objects at other places, with other shapes and goals
-  Zones zones;                                   // what objects enter or cross
+  Zones zones;                                   // what objects enter or cross, and other ground
+  bool wheels_slip;                              // whether some wheels turn otherwise than the body moves
   std::vector<View> views;                       // fields of view that are watched
   std::vector<std::uint8_t> is_target;           // (N,) whether it is watched who sees an object
 

@@ -76,6 +76,12 @@ DRIVES: dict[str, Code] = {
         "'command_period' of at most 'step_time' holds nothing. Example: actuation on an object without kinematics; "
         "remove it.",
     ),
+    "ground-unfelt": Code(
+        "ground of a zone that drives do not feel",
+        "Zones of 'world.zones' may say what their ground does to wheels: 'slip' reaches every drive of irsim, 'grip' "
+        "those with forces (single_track, diff_dynamic), 'surface' only skid_steer, and drives in Python feel none of "
+        "it. Example: grip: 0.2 under a robot with diff; write slip: 0.2, or kinematics: {name: diff_dynamic}.",
+    ),
     "reacts-late": Code(
         "commands that take effect late",
         "'actuation' delays what a behavior decides, and behaviors decide as if their commands were executed at once. "

@@ -70,7 +70,7 @@ def draw_zones(zones: Sequence[Zone], color: Color, extent: tuple[float, float, 
             edge = Stroke(own, _EDGE_WIDTH_PT, style="--")
             drawn.marks.append(Mark(number, "zone", shape, own, Stroke(None), _FILL_ALPHA, _ZORDER))
             drawn.marks.append(Mark(number, "zone", shape, None, edge, _ALPHA, _ZORDER))
-        drawn.labels.append(_label(number, zone.name, shape, own, extent))
+        drawn.labels.append(_label(number, zone.title, shape, own, extent))
     return drawn
 
 

@@ -26,7 +26,7 @@ __all__ = ["PythonDrives", "attach_python_drives", "diff_control", "handler_of",
 
 _CONTACT = COLLISION_MODES["contact"]
 _ROUNDING = 1e-9
-_DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
+_DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4, track=1.0)
 
 
 class ManyControls:
@@ -353,6 +353,14 @@ def velocity_xy(view: SimObject) -> Floats:
     if (handler := handler_of(view)) is not None:
         return column(handler.velocity_to_xy(view.state, view.velocity))
     return column(view._simulation.state.velocity_world(view.row))
+
+
+def wheels_slip(view: SimObject) -> bool:
+    """Whether the body may move otherwise than its controls say, because of its drive or of the ground of zones."""
+    options: Any = view.record.kinematics
+    if options is None:
+        return False
+    return bool(options.slips or ("slip" in options.feels and view._simulation.scenario.world.has_grounds))
 
 
 def body_twist(view: SimObject) -> tuple[float, float, float]:

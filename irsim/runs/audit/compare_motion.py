@@ -34,6 +34,8 @@ def _is_known(artifact: Artifact, body: Body) -> str | None:
         return "has noise in its drive"
     if artifact.world.collision_mode == "contact":
         return "can be pushed"
+    if any(ground.has_effect for ground in artifact.world.zones):
+        return "may be on ground on which wheels slip"
     return "is moved by another program" if artifact.meta.options.get("bridges") else None
 
 

@@ -32,6 +32,20 @@ class Meta(BaseModel):
     trace_until: Step | None = None
 
 
+class GroundFacts(BaseModel):
+    """What the ground of a zone does to wheels."""
+
+    slip: Finite = 0.0
+    slip_std: Finite = 0.0
+    grip: Finite = 1.0
+    surface: Name | None = None
+
+    @property
+    def has_effect(self) -> bool:
+        """Whether wheels on it move otherwise than elsewhere."""
+        return bool(self.slip or self.slip_std or self.grip != 1.0 or self.surface)
+
+
 class WorldFacts(BaseModel):
     """Keys of the world that decide what counts."""
 
@@ -39,6 +53,7 @@ class WorldFacts(BaseModel):
     collision_mode: Name = "stop"
     contacts: Literal["step_end", "swept"] = "step_end"
     after_arrival: Name | None = None
+    zones: Annotated[list[GroundFacts], Field(max_length=100_000)] = []
 
 
 PerControl = Finite | Annotated[list[Finite], Field(max_length=64)]

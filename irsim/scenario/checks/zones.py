@@ -1,13 +1,15 @@
-"""Checks ``world.zones``: names, exactly one outline each, outlines that enclose an area, places outside the world."""
+"""Checks ``world.zones``: names, one outline each, areas that enclose something, places outside the world, ground."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from irsim.diagnostics.diagnostic import Path
+from irsim.options.registry import KINEMATICS
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks._outlines import check_polygon, check_rectangle
-from irsim.scenario.messages.findings import Finding, error, warning
+from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.zones import OUTLINES, Zone
 
 
@@ -29,6 +31,7 @@ def check(context: Context) -> Iterator[Finding]:
         if len(given) == 1:
             findings = list(_outline(path, zone))
             yield from findings or _outside(context, path, zone)
+            yield from _ground(context, path, zone)
         elif not given:
             yield error(
                 "missing-key",
@@ -55,6 +58,36 @@ def _outline(path: Path, zone: Zone) -> Iterator[Finding]:
         yield from check_rectangle((*path, "rectangle"), zone.rectangle)
     if zone.polygon is not None:
         yield from check_polygon((*path, "polygon"), zone.polygon)
+
+
+def _ground(context: Context, path: Path, zone: Zone) -> Iterator[Finding]:
+    """Ground of lines, and ground that no drive of the scenario, or not all of them, feel."""
+    given = {"slip": zone.slip or zone.slip_std, "grip": zone.grip != 1.0, "surface": zone.surface}
+    for key in [key for key, has_effect in given.items() if has_effect]:
+        if zone.is_line:
+            message = f"zone '{zone.name}' is a line, which has no ground"
+            fix = "give it an area: 'rectangle', 'polygon' or 'circle'"
+            yield error("conflicting-keys", (*path, key), message, given=getattr(zone, key), fix=fix)
+            continue
+        drives: list[Any] = [record.kinematics for record in context.entry_objects if not record.static]
+        moving = [drive for drive in drives if drive is not None]
+        unfelt = sorted({drive.name for drive in moving if key not in drive.feels})
+        felt = any(key in drive.feels for drive in moving)
+        if felt and key == "slip" and unfelt:
+            names = ", ".join(map(repr, unfelt))
+            message = f"the drives {names} do not slip: of drives in Python, irsim does not know the wheels"
+            yield hint("ground-unfelt", (*path, key), message, fix="nothing to fix if they need not slip")
+        elif moving and not felt:
+            names = " and ".join(
+                map(repr, sorted(one.name for one in KINEMATICS.features() if key in getattr(one.options, "feels", ())))
+            )
+            yield warning(
+                "ground-unfelt",
+                (*path, key),
+                f"no drive of this scenario feels the '{key}' of zone '{zone.name}': only {names} do",
+                given=getattr(zone, key),
+                fix=f"use another drive, or remove '{key}'",
+            )
 
 
 def _outside(context: Context, path: Path, zone: Zone) -> Iterator[Finding]:

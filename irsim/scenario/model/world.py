@@ -211,6 +211,11 @@ class WorldModel(Options):
     """How the world is drawn."""
 
     @property
+    def has_grounds(self) -> bool:
+        """Whether a zone changes what wheels do."""
+        return any(zone.has_ground for zone in self.zones)
+
+    @property
     def center(self) -> list[float]:
         """Middle of the world [m]."""
         return [self.offset[0] + self.width / 2, self.offset[1] + self.height / 2]

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Kernels", "kernel_options", "kernels_of", "parts_of", "placement_kernel"]
 
+_USUAL_WIDTH = 0.3
+"""Width of a body whose shape is not known [m]."""
+
 
 @dataclass(frozen=True)
 class Kernels:
@@ -59,10 +62,19 @@ def kernels_of(record: ObjectRecord, group_behavior: BehaviorOptions | None, zon
         route, options = _route_options(options, zones), options.local
     if record.kinematics is not None:
         limits = {name: float("inf") for name, value in record.kinematics if value is None}
+        if "track" in limits:
+            limits["track"] = _width(parts)
         drive = kernel_options(KINEMATICS, record.kinematics, **{**limits, "wheelbase": record.wheelbase or 1.0})
         if options is not None and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None:
             behavior = kernel_options(BEHAVIORS, options)
     return Kernels(parts, drive, behavior, route, [_sensor(options, zones) for options in record.sensors])
+
+
+def _width(parts: Sequence[Any]) -> float:
+    """Extent of a body across its heading [m]; of shapes that are drawn for each scene a usual one."""
+    sides = [y for part in parts for _, y in getattr(part, "vertices", ())]
+    sides += [part.center[1] + side * part.radius for part in parts if hasattr(part, "radius") for side in (-1, 1)]
+    return max(sides) - min(sides) if sides and max(sides) > min(sides) else _USUAL_WIDTH
 
 
 def _sensor(options: Any, zones: Sequence[str]) -> Any:
