@@ -24,9 +24,8 @@ def assumptions_of(scenarios: Mapping[str, ResolvedScenario]) -> list[str]:
     Args:
         scenarios: The scenarios of the benchmark, by name.
     """
-    told = [(name, (_contacts(scenario), _limits(scenario))) for name, scenario in scenarios.items()]
-    sentences = [_joined((name, facts[column]) for name, facts in told) for column in range(2)]
-    return [*sentences, "what policies know, they know exactly and at once"] if told else []
+    tellers = (_contacts, _limits, _knowledge)
+    return [_joined((name, tell(scenario)) for name, scenario in scenarios.items()) for tell in tellers if scenarios]
 
 
 def _joined(facts: Iterable[tuple[str, str]]) -> str:
@@ -58,6 +57,18 @@ def _limits(scenario: ResolvedScenario) -> str:
         fact = "accelerations are not limited (no acce)" if used else "robots change their speed at once (no acce)"
     whose = "" if len(given) == len(moving) else " of some robots"
     return f"{fact}, and commands{whose} pass actuators ({', '.join(used)})" if used else fact
+
+
+def _knowledge(scenario: ResolvedScenario) -> str:
+    ways = {record.perceives for record in scenario.objects if record.role == "robot" and not record.static}
+    told = []
+    if ways & {"estimate", "both"}:
+        told.append("where they are from an estimate")
+    if ways & {"tracks", "both"}:
+        told.append("others from tracks of a detector")
+    if not told:
+        return "what policies know, they know exactly and at once"
+    return f"{'some robots' if 'truth' in ways else 'robots'} know {' and '.join(told)}"
 
 
 _EQUAL_SHARE = 0.01

@@ -150,11 +150,22 @@ class Seeds(_Part):
         return self
 
 
+def _needs_little_with_like(schema: dict[str, Any]) -> None:
+    """A file that is like another one needs no scenarios and policies of its own."""
+    always = ["suite", "version", "title"]
+    needed = schema.pop("required")
+    schema |= {"required": always, "anyOf": [{"required": ["like"]}, {"required": needed}]}
+
+
 class Suite(_Part):
     """A benchmark with a fixed protocol."""
 
+    model_config = ConfigDict(json_schema_extra=_needs_little_with_like)
+
     suite: Name
     """Name of the suite; a bundled one has the name of its file."""
+    like: Name | None = None
+    """Name of a bundled suite whose keys count where this file does not give them; `overrides` of both count."""
     version: Annotated[int, Field(ge=1, le=MAX_WHOLE)]
     """Version of the suite: results of different versions are not comparable."""
     title: Annotated[str, Field(min_length=1, max_length=100)]
@@ -208,7 +219,27 @@ class Suite(_Part):
     @model_serializer(mode="wrap")
     def _as_before(self, serialize: Callable[[Suite], dict[str, Any]]) -> dict[str, Any]:
         """The fields, but for new ones without a value, so that the hashes of older suites stay."""
-        return {key: value for key, value in serialize(self).items() if value or key not in ("overrides", "seconds")}
+        new = ("overrides", "seconds", "like")
+        return {key: value for key, value in serialize(self).items() if value or key not in new}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _like_another(cls, given: Any) -> Any:
+        name = given.get("like") if isinstance(given, dict) else None
+        if not isinstance(name, str):
+            return given
+        known = [one for one in SUITES.names() if one != given.get("suite")]
+        if name not in known:
+            fix = suggestion(name, known, "see irsim describe suites")
+            raise ValueError(f"there is no bundled suite {name!r}; {fix}")
+        base = load_path(SUITES.bundled(name)).data
+        if base.get("like"):
+            raise ValueError(f"{name!r} is itself like another suite: name {base['like']!r}")
+        horizon = {"steps", "seconds"} if {"steps", "seconds"} & set(given) else set()
+        kept = {key: value for key, value in base.items() if key not in horizon}
+        own = given.get("overrides")
+        overrides = {**base.get("overrides", {}), **own} if isinstance(own, dict) else base.get("overrides", {})
+        return {**kept, **given, "overrides": overrides}
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Suite:

@@ -36,3 +36,23 @@ def test_the_drives_of_robots_are_told(robots: list[dict[str, Any]], told: str) 
     ]
     scenario, _ = or_raise(read({"robot": made}, strict=True))
     assert assumptions_of({"one": scenario})[1] == told
+
+
+@pytest.mark.parametrize(
+    ("ways", "told"),
+    [
+        (["truth", "truth"], "what policies know, they know exactly and at once"),
+        (["both", "both"], "robots know where they are from an estimate and others from tracks of a detector"),
+        (["estimate", "truth"], "some robots know where they are from an estimate"),
+        (["tracks", "tracks"], "robots know others from tracks of a detector"),
+    ],
+)
+def test_what_robots_go_by_is_told(ways: list[str], told: str) -> None:
+    sensors = [{"name": "localization"}, {"name": "detector"}]
+    made = [
+        {"kinematics": {"name": "diff"}, "state": [1, 1 + 3 * k, 0], "goal": [9, 1 + 3 * k], "sensors": sensors}
+        | {"perceives": way}
+        for k, way in enumerate(ways)
+    ]
+    scenario, _ = or_raise(read({"robot": made}, strict=True))
+    assert assumptions_of({"one": scenario})[2] == told

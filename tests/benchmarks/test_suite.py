@@ -369,3 +369,27 @@ def test_a_scenario_in_which_nothing_can_be_perturbed_is_named(tmp_path: Path) -
     arguments = ["benchmark", str(tmp_path / "field.yaml"), "--seeds", "1", "-o", str(tmp_path / "out")]
     done = CliRunner().invoke(app, arguments)
     assert (done.exit_code, "nothing to perturb in 'field-2'" in done.output) == (2, True)
+
+
+def test_a_suite_may_be_like_another_one(tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text(
+        "suite: mine\nlike: random_polygons_v2\nversion: 3\ntitle: Slower\nseeds: {first: 7, count: 2}\n"
+        'overrides: {"robot[*].acce": [0.5, 2], "robot[*].goal_threshold": 0.5}\n'
+    )
+    base, (mine, _) = load_suite("random_polygons_v2")[0], load_suite(str(path))
+    assert mine.scenarios == base.scenarios
+    assert mine.policies == base.policies
+    assert (mine.title, mine.version, mine.seeds.first, mine.seconds) == ("Slower", 3, 7, base.seconds)
+    assert mine.overrides == {**base.overrides, "robot[*].acce": [0.5, 2], "robot[*].goal_threshold": 0.5}
+    path.write_text(path.read_text().replace("random_polygons_v2", "random_polygon_v2"))
+    with pytest.raises(SuiteError, match="did you mean random_polygons_v2"):
+        load_suite(str(path))
+
+
+@pytest.mark.parametrize("name", [name for name in SUITES.names() if name.endswith("_noisy")])
+def test_a_noisy_twin_has_the_scenes_and_seeds_of_its_suite(name: str) -> None:
+    noisy, ideal = suite_plan(name), suite_plan(name.removesuffix("_noisy"))
+    assert [one.name for one in noisy.scenarios] == [one.name for one in ideal.scenarios]
+    assert (noisy.seeds, noisy.policies) == (ideal.seeds, ideal.policies)
+    assert noisy.suite_hash != ideal.suite_hash
