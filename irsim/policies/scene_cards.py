@@ -90,6 +90,10 @@ SCENE_CARDS: dict[str, SceneCard] = {
         origin="trained", order=10, robots=(1, 1), people=(0, 0), drives=("diff",), radius=(0.2, 0.3), speed=(0.5, 1.5),
         way=13, unyielding=False, cost=_LEARNED, lidar=_FRONT_LIDAR | {"number": 180},
     ),
+    "goal_lidar_noisy": SceneCard(
+        origin="trained", order=11, robots=(1, 1), people=(0, 0), drives=("diff",), radius=(0.2, 0.3), speed=(0.5, 1.5),
+        way=13, unyielding=False, cost=_LEARNED, lidar=_FRONT_LIDAR | {"number": 180},
+    ),
     "corridor_social": SceneCard(
         origin="trained", order=10, robots=(1, 1), people=(1, 8), crowding=16, drives=("diff",), radius=(0.25, 0.35),
         speed=(0.5, 1.5), way=20, unyielding=False, cost=_LEARNED, lidar=_FRONT_LIDAR | {"number": 90},
