@@ -31,6 +31,7 @@ from twins import write_twins
 
 from irsim.bundled import templates
 from irsim.common.installed import version
+from irsim.options.registry import reading_order
 
 __all__ = ["build", "lay_out", "write_source"]
 
@@ -174,7 +175,7 @@ def names_of(pages: list[Page]) -> dict[str, list[tuple[str, str, str]]]:
                 f"{page.path}#{name}" for name in re.findall(r'<span id="([^"]*)"></span>', page.text)
             )
     split = [(path, name) for path, _, name in (place.partition("#") for place in places)]
-    for path, name in sorted(split, key=lambda place: ("".join(place).count("."), len(place[1]), order[place[0]])):
+    for path, name in sorted(split, key=lambda place: (*reading_order(place[1]), order[place[0]])):
         for said in dict.fromkeys((name.lower(), name.rpartition(".")[2].lower())):
             names.setdefault(said, []).append((path, titles[path], name))
     return {said: meanings[:MEANINGS] for said, meanings in sorted(names.items())}

@@ -19,7 +19,7 @@ from irsim.lookup.sizes import without_sizes
 from irsim.lookup.small_examples import example_of
 from irsim.lookup.synonyms import EVERYDAY, named
 from irsim.lookup.things import ALL_GUIDES
-from irsim.options.registry import REGISTRIES
+from irsim.options.registry import REGISTRIES, reading_order
 
 __all__ = ["MAX_HITS", "all_topics", "mended_text", "near_topics", "nearest_name", "nearest_topic", "search_answer"]
 
@@ -55,7 +55,7 @@ def search_answer(schema: Node, topic: str, words: list[str], explain: Callable[
     """
     wanted = " ".join(words).lower()
     keys = [(_hit(path, node), node) for path, node in paths(schema) if _is_searched(path)]
-    keys.sort(key=lambda match: len(match[0].name))
+    keys.sort(key=lambda match: reading_order(match[0].name))
     same = [hit for hit, _ in keys if _last(hit) == wanted]
     if same:
         return _namesakes_answer(clean(wanted), same)

@@ -31,6 +31,7 @@ __all__ = [
     "Feature",
     "Registry",
     "is_built_in",
+    "reading_order",
 ]
 
 
@@ -74,12 +75,16 @@ class Registry:
         kind: Singular word for messages: ``behavior``.
         package: Package whose modules are the built-in features, one module per name.
         group: Entry-point group of third-party features.
+        best_known: Names that answers show before the others where several features have a key, best known first.
         families: Names of modules with several features each, if the package has such modules; they are imported
             together.
     """
 
-    def __init__(self, kind: str, package: str, group: str, *, families: Sequence[str] = ()) -> None:
+    def __init__(
+        self, kind: str, package: str, group: str, *, best_known: Sequence[str] = (), families: Sequence[str] = ()
+    ) -> None:
         self.kind, self.package, self.group = kind, package, group
+        self.best_known = tuple(best_known)
         self._families = tuple(families)
         self._features: dict[str, Feature] = {}
         self._plugins: dict[str, Any] | None = None
@@ -233,14 +238,24 @@ class CustomBehaviors:
         return sorted(drive for drive, known in self._pairs() if known == name)
 
 
-BEHAVIORS = Registry("behavior", "irsim.components.behaviors", "irsim.behaviors")
-BRIDGES = Registry("bridge", "irsim.components.bridges", "irsim.bridges")
-DISTRIBUTIONS = Registry("distribution", "irsim.components.distributions", "irsim.distributions")
-KINEMATICS = Registry("kinematics", "irsim.components.kinematics", "irsim.kinematics")
-MAPS = Registry("map", "irsim.components.maps", "irsim.maps")
-PLANNERS = Registry("planner", "irsim.components.planners", "irsim.planners", families=("grid", "sampling"))
-SENSORS = Registry("sensor", "irsim.components.sensors", "irsim.sensors")
-SHAPES = Registry("shape", "irsim.components.shapes", "irsim.shapes")
+BEHAVIORS = Registry(
+    "behavior", "irsim.components.behaviors", "irsim.behaviors", best_known=("dash", "orca", "rvo", "sfm", "follow")
+)
+BRIDGES = Registry("bridge", "irsim.components.bridges", "irsim.bridges", best_known=("ros2",))
+DISTRIBUTIONS = Registry(
+    "distribution", "irsim.components.distributions", "irsim.distributions", best_known=("random",)
+)
+KINEMATICS = Registry(
+    "kinematics", "irsim.components.kinematics", "irsim.kinematics", best_known=("diff", "omni", "acker")
+)
+MAPS = Registry("map", "irsim.components.maps", "irsim.maps", best_known=("image",))
+PLANNERS = Registry(
+    "planner", "irsim.components.planners", "irsim.planners", best_known=("astar",), families=("grid", "sampling")
+)
+SENSORS = Registry("sensor", "irsim.components.sensors", "irsim.sensors", best_known=("lidar2d", "imu", "odometry"))
+SHAPES = Registry(
+    "shape", "irsim.components.shapes", "irsim.shapes", best_known=("circle", "rectangle", "polygon", "linestring")
+)
 
 CUSTOM_BEHAVIORS = CustomBehaviors(
     "behavior",
@@ -258,3 +273,14 @@ REGISTRIES = {
     registry.kind: registry
     for registry in (BEHAVIORS, BRIDGES, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES)
 }
+
+
+def reading_order(place: str) -> tuple[int, int, int]:
+    """Sort key of places of one name: shallow ones first, then the components that are best known, then short ones.
+
+    Args:
+        place: Words joined by dots, such as ``robot.sensors.lidar2d.range_max``.
+    """
+    words = place.split(".")
+    known = [name for registry in REGISTRIES.values() for name in registry.best_known]
+    return len(words), min((known.index(word) for word in words if word in known), default=len(known)), len(place)
