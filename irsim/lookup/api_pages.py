@@ -139,7 +139,7 @@ def comparisons() -> Pages:
 def contributing() -> Pages:
     """Return the pages of the skill ``irsim-dev``."""
     rows, root = [], resources.checkout() or Path()
-    for kind, registry in REGISTRIES.items():
+    for kind, registry in sorted(REGISTRIES.items()):
         for feature in registry.features():
             if feature.origin == "built-in":
                 model = f"irsim/components/{_FOLDERS[kind]}/{feature.options.__module__.rpartition('.')[2]}.py"

@@ -129,7 +129,7 @@ def _keys(schema: Node) -> list[tuple[str, str]]:
     for section, name in (("world", "world"), ("robot", "entry")):
         [keys] = [option["properties"] for option in mappings(schema, language[section])]
         rows += [_key_row(f"{name}.{key}") for key in keys]
-    for kind, registry in REGISTRIES.items():
+    for kind, registry in sorted(REGISTRIES.items()):
         for feature in registry.features():
             place = f"{kind}.{feature.name}"
             keys = [f"{place}.{key}" for key in feature.options.model_fields if key != "name"]

@@ -15,6 +15,7 @@ from irsim.lookup.answer import Answer, Key, TopicError, first_sentence
 from irsim.lookup.index import all_codes, code_answer, template_answer
 from irsim.lookup.metrics import METRIC_TOPICS, metric_line
 from irsim.lookup.schema_walk import Node, alternatives, paths, step
+from irsim.lookup.shared_keys import same_key_of
 from irsim.lookup.sizes import without_sizes
 from irsim.lookup.small_examples import example_of
 from irsim.lookup.synonyms import EVERYDAY, named
@@ -106,7 +107,7 @@ def _namesakes_answer(wanted: str, same: list[Key]) -> Answer:
         used = {name: example_of(tuple(name.split("."))) for name in names}
         known = [name for name in names if used[name] and name.startswith("robot.")]
         first = next((name for name in names if name in EVERYDAY), next(iter(known), names[0]))
-        lines.append(Key(name=first, text=f"{text}{_also(first, names)}"))
+        lines.append(Key(name=first, text=f"{text}{same_key_of(first, names)}"))
         examples += [example for example in [used[first]] if example]
     count = f"{len(lines)} meanings, {len(same)} places" if len(lines) > 1 else f"{len(same)} places"
     return Answer(
@@ -116,17 +117,6 @@ def _namesakes_answer(wanted: str, same: list[Key]) -> Answer:
         groups={"topics": lines[:_MAX_NAMESAKES]},
         example=examples[0] if examples else None,
     )
-
-
-def _also(first: str, names: Sequence[str]) -> str:
-    """Say in which other places a key has the same meaning, by the parts of their paths that differ."""
-    start = first.split(".")
-    others = []
-    for name in names:
-        words = name.split(".")
-        shared = next((k for k, (a, b) in enumerate(zip(words, start, strict=False)) if a != b), len(start) - 1)
-        others += [".".join(words[shared:-1]) or ".".join(words[:-1])] if name != first else []
-    return f" The same key of {', '.join(others)}." if others else ""
 
 
 def _hits_answer(wanted: str, hits: list[Key], title: str, unknown: Sequence[str] = ()) -> Answer:

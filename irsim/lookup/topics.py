@@ -47,6 +47,7 @@ from irsim.lookup.search import (
     nearest_topic,
     search_answer,
 )
+from irsim.lookup.shared_keys import every_name, meanings
 from irsim.lookup.small_examples import BETTER, example_of, small_example
 from irsim.lookup.synonyms import named
 from irsim.lookup.things import ALL_GUIDES, THINGS
@@ -244,10 +245,12 @@ def _kind(word: str) -> str | None:
 
 def _part(schema: Node, path: tuple[str, ...], nodes: list[Node]) -> Answer:
     node = nodes[0]
-    about = key(schema, path[-1], node)
-    names = components(schema, node)
+    about = every_name(schema, path) or key(schema, path[-1], node)
+    names, several = components(schema, node), meanings(schema, path)
     registry, feature_name = _registry_of(path)
-    if len(names) > 1 and registry is not None and not feature_name:
+    if several:
+        about, groups = Key(name=path[-1]), {"meanings": several}
+    elif len(names) > 1 and registry is not None and not feature_name:
         groups = {f"{registry.kind}, one of": [_component_line(registry, name) for name in names]}
     elif len(names) > 1 and not feature_name:
         groups = _keys_by_component(schema, names)
@@ -268,7 +271,7 @@ def _part(schema: Node, path: tuple[str, ...], nodes: list[Node]) -> Answer:
         kind="component" if feature_name else "key",
         title=title,
         text=text,
-        about=None if feature_name or path in (("world",), ("robot",), ("obstacle",)) else about,
+        about=None if several or feature_name or path in (("world",), ("robot",), ("obstacle",)) else about,
         groups=groups,
         example=_example(schema, path, node, feature_name),
         see=_related(path, registry, feature_name),

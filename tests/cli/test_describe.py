@@ -131,7 +131,7 @@ def test_a_key_of_many_places_has_one_line_for_each_meaning() -> None:
     lines = lookup("wheelbase").groups["topics"]
     places = ("robot.shape.rectangle", "robot.kinematics.diff", "robot.kinematics.single_track")
     assert [line.name for line in lines] == [f"{place}.wheelbase" for place in places]
-    assert "The same key of circle, polygon, compound, linestring, compound.parts.circle" in lines[0].text
+    assert "The same key of circle, polygon, linestring, compound, compound.parts.circle" in lines[0].text
     assert "omni_angular" in lines[1].text
     assert lookup("wheelbase").example == "wheelbase: 2.6"
     assert len(as_text(lookup("wheelbase"))) < 700
