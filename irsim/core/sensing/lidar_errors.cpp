@@ -126,20 +126,29 @@ class Detection {
         fade_(errors.fade),
         growth_(std::log(limits.farthest / errors.range_dark) / std::log(kWhite / kDark)) {}
 
-  /// Whether a surface that throws back a share of the light returns a beam; `draw()` is a uniform draw.
-  template <class Draw>
-  bool operator()(double range, double share, Draw&& draw) const {
-    const double doubt = kWidths * fade_;
-    if (share >= kDark && range + doubt <= dark_) return true;
+  /// Whether a surface that throws back a share of the light returns a beam.
+  ///
+  /// Args:
+  ///   draw: Uniform; it is compared with a logistic curve of the range.
+  bool operator()(double range, double share, double draw) const {
+    if (share >= kDark && surely(dark_ - range, draw)) return true;
     // The range at which half of the beams return grows with a power of the share.
     const double ahead = dark_ * std::pow(share / kDark, growth_) - range;
-    if (std::fabs(ahead) >= doubt) return ahead >= 0.0;
-    return draw() < 1.0 / (1.0 + std::exp(-ahead / fade_));
+    if (ahead >= 0.0 ? surely(ahead, draw) : surely(-ahead, 1.0 - draw)) return ahead >= 0.0;
+    return ahead >= kWidths * fade_ || (ahead > -kWidths * fade_ && draw < 1.0 / (1.0 + std::exp(-ahead / fade_)));
   }
 
  private:
   static constexpr double kDark = 0.1, kWhite = 0.9;  // reflectivities for which ranges are told
   static constexpr double kWidths = 30.0;             // of the logistic curve, beyond which it is 0 or 1
+
+  /// Whether a draw lies below the logistic curve at `ahead` even if the exponential function is replaced by the first
+  /// terms of its series, which are smaller.
+  bool surely(double ahead, double draw) const {
+    if (!(ahead > 0.0)) return false;
+    const double t = ahead / fade_;
+    return (1.0 - draw) * (2.0 + t * (1.0 + t * (0.5 + t * (1.0 / 6.0)))) > 1.0;
+  }
 
   double dark_, fade_, growth_;
 };
@@ -185,6 +194,7 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
   const double scale = 1.0 + errors.scale_std * episode.normal(0), bias = errors.bias_std * episode.normal(1);
   const double least_cosine = steep ? std::cos(errors.incidence_max) : 0.0;
   const double shorts = errors.dropout + errors.short_share, randoms = shorts + errors.random_share;
+  const bool chance = dim || randoms > 0.0;
   const Detection detected(errors, limits);
   const std::uint64_t first = s.scan_number() * static_cast<std::uint64_t>(s.all_beams) + s.first_beam;
   for (int i = 0; i < n; ++i) {
@@ -192,9 +202,12 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
     bool returned = hit >= 0 && !(steep && beams.cosine[i] < least_cosine);
     const double ahead = limits.depth == nullptr ? 1.0 : s.mount.cosine[i];  // share of the range along the axis
     if (limits.depth != nullptr) returned = returned && beams.range[i] * ahead >= limits.depth->nearest;
+    const double outcome = chance ? choice(first + i) : 1.0;
     if (returned && dim) {
       const double share = s.world.reflectivity[hit] * beams.cosine[i] * beams.power[i];
-      returned = detected(beams.range[i], share, [&] { return details.uniform(4 * (first + i)); });
+      const bool plain = outcome >= randoms;  // then the rest of the draw serves as well as another one
+      const double draw = plain ? (outcome - randoms) / (1.0 - randoms) : details.uniform(4 * (first + i));
+      returned = detected(beams.range[i], share, draw);
     }
     double range = limits.farthest;
     if (returned) {
@@ -204,16 +217,13 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
       range = std::max(0.0, scale * exact + bias);
       if (sigma > 0.0) range = std::max(0.0, range + s.noise() * sigma * normal(first_draw + i));
     }
-    if (randoms > 0.0) {
-      const double outcome = choice(first + i);
-      if (outcome < errors.dropout) {
-        returned = false;
-      } else if (outcome < shorts) {
-        if (returned) range = cut_short(errors.short_rate, range, details.uniform(4 * (first + i) + 1)), hit = -1;
-      } else if (outcome < randoms) {
-        const double share = details.uniform(4 * (first + i) + 1);
-        range = limits.nearest + share * (limits.farthest - limits.nearest), hit = -1, returned = true;
-      }
+    if (outcome < errors.dropout) {
+      returned = false;
+    } else if (outcome < shorts) {
+      if (returned) range = cut_short(errors.short_rate, range, details.uniform(4 * (first + i) + 1)), hit = -1;
+    } else if (outcome < randoms) {
+      const double share = details.uniform(4 * (first + i) + 1);
+      range = limits.nearest + share * (limits.farthest - limits.nearest), hit = -1, returned = true;
     }
     returned = returned && !is_blind(errors, s.mount.angle[i]);
     if (returned) range = rounded(errors, range);

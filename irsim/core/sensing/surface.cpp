@@ -21,12 +21,13 @@ double distance_to(Vec2 p, Vec2 a, Vec2 b) { return norm(p - nearest_on_segment(
 Vec2 Surface::normal(const Fan& fan, int i) {
   const int object = fan.hit(i);
   const Vec2 at = fan.end(i);
-  const Footprint body = sensing_.footprint(object);
-  if (object == object_ && part_ < body.count && body.parts[part_].kind != Kind::circle) {
-    const Vec2* edge = body.vertices + body.parts[part_].first + edge_;
-    if (distance_to(at, edge[0], edge[1]) <= kOnEdge * (1.0 + norm(at))) return normal_to(edge[1] - edge[0]);
+  if (object == object_) {
+    const double slack = kOnEdge * (1.0 + std::fabs(at.x) + std::fabs(at.y));
+    const double way = dot(at - from_, along_);
+    if (std::fabs(dot(at - from_, normal_)) <= slack && way >= 0.0 && way <= squared(along_)) return normal_;
   }
-  object_ = object;
+  const Footprint body = sensing_.footprint(object);
+  object_ = -1;
   double least = kInfinity;
   Vec2 out{1.0, 0.0};
   for (int part = 0; part < body.count; ++part) {
@@ -36,12 +37,14 @@ Vec2 Surface::normal(const Fan& fan, int i) {
     if (p.kind == Kind::circle) {
       const Vec2 arm = at - *vertices;
       const double length = norm(arm), away = std::fabs(length - p.radius);
-      if (away < least) least = away, part_ = part, out = length > 0.0 ? arm * (1.0 / length) : out;
+      if (away < least) least = away, object_ = -1, out = length > 0.0 ? arm * (1.0 / length) : out;
       continue;
     }
     for (int k = 0; k < p.last - p.first; ++k) {
       const double away = distance_to(at, vertices[k], vertices[k + 1]);
-      if (away < least) least = away, part_ = part, edge_ = k, out = normal_to(vertices[k + 1] - vertices[k]);
+      if (!(away < least)) continue;
+      least = away, object_ = object, from_ = vertices[k], along_ = vertices[k + 1] - vertices[k];
+      out = normal_ = normal_to(along_);
     }
   }
   return out;

@@ -22,7 +22,8 @@ class Surface {
   Vec2 normal_of_cells(const OccupancyGrid& grid, const Fan& fan, int i) const;
 
   const Sensing& sensing_;
-  int object_ = -1, part_ = 0, edge_ = 0;
+  int object_ = -1;             // whose edge was hit last; -1: none
+  Vec2 from_, along_, normal_;  // of that edge
 };
 
 }  // namespace irsim
