@@ -24,7 +24,7 @@ from irsim.common.archives import opened_archive, read_array
 from irsim.common.files import Buffer
 from irsim.common.records import ContentError, read_json
 from irsim.runs.files import unreadable
-from irsim.simulation.trace import Trace
+from irsim.simulation.trace import Trace, by_name
 
 __all__ = ["Layout", "PieceWriter", "load_chunk", "load_events", "pack_chunk"]
 
@@ -225,7 +225,9 @@ def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layou
         parts = zip(layout.sensors, np.split(scans, cuts, axis=1), strict=True)
         ranges = {key: part for (key, _), part in parts if key.rpartition("/")[0] in names}
     step = np.arange(first, first + rows, dtype=np.int64)
-    readings = _readings(about, arrays["readings"], rows, layout, names) if "readings" in arrays else {}
+    readings = (
+        _readings(about, arrays.get("readings"), rows, layout, names) if layout.gauges and "ranges" in arrays else {}
+    )
     return Trace(
         step=step,
         time=step.astype(np.float64) * layout.step_time,
@@ -244,11 +246,13 @@ def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layou
 
 
 def _readings(
-    about: dict[str, Any], values: NDArray[Any], rows: int, layout: Layout, names: Sequence[str]
+    about: dict[str, Any], values: NDArray[Any] | None, rows: int, layout: Layout, names: Sequence[str]
 ) -> dict[str, NDArray[np.void]]:
-    """The numbers of each sensor of the chosen objects, see ``Trace.readings``."""
+    """The numbers of each sensor of the chosen objects, see ``Trace.readings``; without values they have no rows."""
     counts = [count for _, _, count in layout.gauges]
-    all_of_them = _expand(about["reading_rows"], values, rows, (sum(counts),))
+    all_of_them = np.zeros((0, sum(counts)))
+    if values is not None:
+        all_of_them = _expand(about["reading_rows"], values, rows, (sum(counts),))
     readings = {}
     parts = np.split(all_of_them, np.cumsum(counts)[:-1], axis=1)
     for (key, columns, count), part in zip(layout.gauges, parts, strict=True):
@@ -256,8 +260,7 @@ def _readings(
             continue
         if not columns or count % len(columns) or len(set(columns)) != len(columns):
             raise ValueError(f"'{key}' has no {count} numbers")
-        row = np.ascontiguousarray(part).view([(name, np.float64) for name in columns])
-        readings[key] = row[:, 0] if count == len(columns) else row
+        readings[key] = by_name(part, columns)
     return readings
 
 

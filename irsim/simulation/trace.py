@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.components.sensors._gauges import GaugeOptions
 from irsim.simulation.build import steps_within
 
 if TYPE_CHECKING:
@@ -20,12 +21,15 @@ __all__ = [
     "Rollout",
     "Trace",
     "all_poses",
+    "by_name",
     "cut_trace",
     "gauges",
     "join_traces",
+    "mounted_gauges",
     "next_rows",
     "past_goals",
     "past_poses",
+    "present_readings",
     "present_row",
     "record",
     "record_rollout",
@@ -281,18 +285,40 @@ def gauges(simulation: Simulation) -> list[tuple[str, list[str], int]]:
     The key is ``<object>/<sensor>``, of a second one of a kind ``<object>/<sensor>_2``. Their numbers follow each other
     in the readings.
     """
+    counts = [count for _, _, count in simulation.world.gauges()]
+    mounted = zip(mounted_gauges(simulation), counts, strict=True)
+    return [(key, [name for name, _ in sensor.numbers()], count) for (_, key, sensor), count in mounted]
+
+
+def mounted_gauges(simulation: Simulation) -> list[tuple[int, str, GaugeOptions]]:
+    """Return, for each sensor that reports numbers: the row of its object, its key and its options."""
     taken: dict[str, int] = {}
-    columns = []
+    mounted = []
     options = {
-        owner: [one for one in record.sensors if hasattr(one, "numbers")]
+        owner: [one for one in record.sensors if isinstance(one, GaugeOptions)]
         for owner, record in enumerate(simulation.scenario.objects)
     }
-    for owner, _, count in simulation.world.gauges():
-        sensor: Any = options[owner].pop(0)
+    for owner, _, _ in simulation.world.gauges():
+        sensor = options[owner].pop(0)
         key = f"{simulation.scenario.objects[owner].name}/{sensor.name}"
         number = taken[key] = taken.get(key, 0) + 1
-        columns.append((key if number == 1 else f"{key}_{number}", [name for name, _ in sensor.numbers()], count))
-    return columns
+        mounted.append((owner, key if number == 1 else f"{key}_{number}", sensor))
+    return mounted
+
+
+def present_readings(simulation: Simulation) -> dict[str, NDArray[np.void]]:
+    """Return what sensors without beams report now as :attr:`Trace.readings` of one row; of a single world."""
+    readings, result, first = simulation.state.readings[None].copy(), {}, 0
+    for key, names, count in gauges(simulation):
+        result[key] = by_name(readings[:, first : first + count], names)
+        first += count
+    return result
+
+
+def by_name(values: Floats, names: Sequence[str]) -> NDArray[np.void]:
+    """Rows of numbers (T, n) as a structured array (T,) with these names, or (T, K) if a row has K times as many."""
+    rows = np.ascontiguousarray(values).view([(name, np.float64) for name in names])
+    return rows[:, 0] if values.shape[1] == len(names) else rows
 
 
 def past_poses(simulation: Simulation, row: int) -> Floats | None:

@@ -49,6 +49,20 @@ def test_a_record_has_the_numbers_of_every_step_by_name(workspace: Path) -> None
     assert list(alone.readings) == ["ann/imu"]
 
 
+def test_a_record_that_is_full_has_the_numbers_of_its_first_steps(
+    workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    irsim.run(write(workspace), seed=0, record="whole", steps=60)
+    monkeypatch.setattr("irsim.runs.recorder._MAX_SCANS_BYTES", 10_000)
+    run_id = irsim.run("scene.yaml", seed=0, record=True, steps=60).run_id
+    whole, full = open_run("whole").trace(), open_run(str(run_id)).trace()
+    assert (len(whole), len(full)) == (61, 61)
+    kept = len(full.readings["ann/imu"])
+    assert 0 < kept < 61
+    for key, block in full.readings.items():
+        assert block.tobytes() == whole.readings[key][:kept].tobytes(), key
+
+
 def test_runs_part_where_a_reading_does(workspace: Path) -> None:
     write(workspace)
     irsim.run("scene.yaml", seed=0, record="one", steps=10)

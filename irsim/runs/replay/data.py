@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from irsim.common.text import clean
 from irsim.runs.reading import Run
+from irsim.runs.replay.beliefs import believers_of
 from irsim.runs.replay.drawing import Columns, folded
 from irsim.runs.replay.rows import (
     MAX_EVENTS,
@@ -117,17 +118,21 @@ def pack_trace(trace: Trace, events: Sequence[Event], simulation: Simulation, ab
     moving = np.flatnonzero(moved & ~np.isnan(trace.pose).all(axis=(0, 2)))
     for number, row in enumerate(moving.tolist()):
         objects[row]["track"] = number
-    every = steps_between_rows(len(trace), len(moving))
+    believers = believers_of(simulation).known_in(trace)
+    scene |= believers.announce(objects, len(moving))
+    every = steps_between_rows(len(trace), len(moving) + believers.count(trace))
     rows = _rows(len(trace), every)
     columns.add("step", trace.step[rows], 2)
-    add_poses(columns, _held(trace.pose)[np.ix_(rows, moving)], quantum)
+    shown = np.concatenate([_held(trace.pose)[:, moving], believers.poses(trace)], axis=1)
+    add_poses(columns, shown[rows], quantum)
+    believers.add_tracks(columns, trace, rows, quantum)
     for number, item in enumerate(objects):
         item |= _presence(trace, number, int(starts[number]))
     add_goals(columns, trace.goal[rows], travellers(objects), quantum)
     add_flags(columns, flags_of(trace)[rows])
     scans = _add_scans(columns, trace, rows, scene["lidars"])
-    last, shown = int(trace.step[-1]), _events(events, trace, objects)
-    head = page_head(scene, about, last_step=last, every=every, scans=scans, events=shown)
+    last, listed = int(trace.step[-1]), _events(events, trace, objects)
+    head = page_head(scene, about, last_step=last, every=every, scans=scans, events=listed)
     return Packed(columns.block(head), head)
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from irsim.common.text import clean
+from irsim.runs.replay.beliefs import believers_of
 from irsim.runs.replay.drawing import Columns
 from irsim.runs.replay.rows import (
     MAX_EVENTS,
@@ -22,7 +24,7 @@ from irsim.runs.replay.rows import (
 )
 from irsim.simulation.build import steps_until
 from irsim.simulation.events import read_events
-from irsim.simulation.trace import Trace, join_traces, present_row, recorded_rows
+from irsim.simulation.trace import Trace, join_traces, present_readings, present_row, recorded_rows
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
@@ -47,11 +49,14 @@ class GrowingRun:
 
     def __init__(self, simulation: Simulation, horizon: int, **facts: Any) -> None:
         self._simulation = simulation
-        columns, start = Columns(), present_row(simulation)
+        self._believers = believers_of(simulation)
+        columns, start = Columns(), self._row()
         scene = page_scene(simulation, columns)
         self._moving = recorded_rows(simulation)
-        self._every = steps_between_rows(horizon + 1, len(self._moving))
+        believed = len(self._believers.estimates) + self._believers.most(start)
+        self._every = steps_between_rows(horizon + 1, len(self._moving) + believed)
         self._objects, self._quantum = scene["objects"], scene["quanta"][0]
+        scene |= self._believers.announce(self._objects, len(self._moving))
         for number, row in enumerate(self._moving):
             self._objects[row]["track"] = number
         self._travellers = travellers(self._objects)
@@ -69,7 +74,9 @@ class GrowingRun:
                 appears = steps_until(record.appear_time, scene["step_time"]) if record.appear_time else horizon + 1
                 self._objects[row]["from"] = appears
         columns.add("step", start.step, 2)
-        add_poses(columns, self._pose[None, self._moving], self._quantum)
+        self._belief = self._believers.poses(start)
+        add_poses(columns, np.concatenate([self._pose[None, self._moving], self._belief], axis=1), self._quantum)
+        self._believers.add_tracks(columns, start, np.arange(1), self._quantum)
         add_goals(columns, start.goal, self._travellers, self._quantum)
         add_flags(columns, self._flags[None])
         about = {"run_id": "", "title": clean(simulation.scenario.name), "status": "simulating", "outcome": None}
@@ -89,7 +96,7 @@ class GrowingRun:
         """
         step = int(self._simulation.count[0])
         if step > self._last and (last or step % self._every == 0):
-            self._taken.append(present_row(self._simulation))
+            self._taken.append(self._row())
             self._last = step
 
     def block(self) -> bytes | None:
@@ -99,7 +106,10 @@ class GrowingRun:
         trace, columns = join_traces(self._taken), Columns()
         self._taken = []
         columns.add("step", trace.step, 2)
-        add_poses(columns, self._poses(trace)[:, self._moving], self._quantum)
+        add_poses(
+            columns, np.concatenate([self._poses(trace)[:, self._moving], self._beliefs(trace)], 1), self._quantum
+        )
+        self._believers.add_tracks(columns, trace, np.arange(len(trace)), self._quantum)
         add_goals(columns, trace.goal, self._travellers, self._quantum, self._goal)
         flags = flags_of(trace)
         add_flags(columns, flags, self._flags)
@@ -117,6 +127,19 @@ class GrowingRun:
             poses[absent] = np.where(np.isnan(poses[absent]), poses[absent - 1], poses[absent])
         poses[:, :, 2] = np.unwrap(np.nan_to_num(poses[:, :, 2]), axis=0)
         self._pose = poses[-1]
+        return poses[1:]
+
+    def _row(self) -> Trace:
+        """The present state, with the readings of sensors if any of them is a belief."""
+        row = present_row(self._simulation)
+        needed = self._believers.estimates or self._believers.detectors
+        return replace(row, readings=present_readings(self._simulation)) if needed else row
+
+    def _beliefs(self, trace: Trace) -> Any:
+        """Poses in which robots believe to be, whose headings go on from the last ones."""
+        poses = np.concatenate([self._belief, self._believers.poses(trace)])
+        poses[:, :, 2] = np.unwrap(np.nan_to_num(poses[:, :, 2]), axis=0)
+        self._belief = poses[-1:]
         return poses[1:]
 
     @staticmethod

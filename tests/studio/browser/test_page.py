@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from tests.browser import until
+from tests.runs.replay import beliefs
 from tests.runs.replay.browser.test_player import pixel_of, settled, time_of, value
 from tests.runs.replay.conftest import HOSTILE, scene
 from tests.studio.browser.conftest import Start
@@ -220,3 +221,16 @@ def test_a_narrow_window(start: Start) -> None:
         assert box["x"] + box["width"] <= 390, name
     go_on.set()
     watched.finish()
+
+
+def test_beliefs_grow_with_the_run(start: Start) -> None:
+    watched = start(beliefs.SCENE, speed=16)
+    result, page = watched.finish(), watched.page
+    until(page, f"document.getElementById('time').value == {result.steps}")
+    page.select_option("#robot", label="lost")
+    assert page.locator("#belief").is_visible()
+    told = value(page, "believes")
+    off = float(told.rpartition("off by ")[2].removesuffix(" m"))
+    assert 0 < off < 2
+    page.keyboard.press("Home")
+    assert value(page, "believes") != told

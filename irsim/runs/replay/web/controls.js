@@ -8,7 +8,7 @@ import { listenToMarks } from "./timeline.js";
 import { valuesOf } from "./words.js";
 
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
-const SWITCHES = { f: "follow", l: "lidar", t: "trails", g: "goals", n: "names" };
+const SWITCHES = { f: "follow", l: "lidar", t: "trails", g: "goals", n: "names", b: "belief" };
 const ZOOM = 1.3, CLICK = 4; // pixels a click may move
 const MANY = 10; // steps
 

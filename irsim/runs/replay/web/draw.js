@@ -1,5 +1,6 @@
 // One frame: paper, what stands, trails, goals, the scan, what moves, names, the chosen robot.
 
+import { drawBeliefs, drawSeen } from "./beliefs.js";
 import { inMetres, toPixels, toWorld } from "./camera.js";
 import { cellImage } from "./cells.js";
 import { GLYPHS, rgbOf, shade } from "./colors.js";
@@ -44,6 +45,8 @@ export function drawFrame(context, drawing, run, shown, camera, colors, ratio, m
   const present = run.movers.filter((object) => object.shape >= 0 && !isAbsent(run, object, at));
   for (const object of present) if (object.kind !== "robot") drawMover(context, run, object, at, camera, colors, ratio);
   for (const object of present) if (object.kind === "robot") drawMover(context, run, object, at, camera, colors, ratio);
+  if (shown.belief) drawBeliefs(context, run, at, camera, colors, ratio);
+  if (shown.belief && shown.robot >= 0) drawSeen(context, run, shown.robot, at, camera, colors, ratio);
   drawContacts(context, run, at, camera, colors, ratio);
   for (const object of present) drawState(context, run, object, at, object.index === shown.robot, camera, colors, ratio);
   if (shown.names) drawNames(context, run, at, shown.robot, camera, colors, ratio);

@@ -33,6 +33,15 @@ function radiusOf(run, object, camera) {
   return Math.max(object.radius, least / camera.scale);
 }
 
+/** Outline of a body in its own frame as it is drawn, and how far it gets ahead. */
+export function bodyPath(run, object, camera) {
+  const box = boxOf(run, object);
+  if (!box.round) return { path: run.paths[object.shape], reach: box.x + box.length };
+  const path = new Path2D(), reach = radiusOf(run, object, camera);
+  path.arc(0, 0, reach, 0, 2 * Math.PI);
+  return { path, reach };
+}
+
 function polygon(context, points, size, x = 0, y = 0) {
   context.beginPath();
   for (const [px, py] of points) context.lineTo(x + px * size, y + py * size);

@@ -1,5 +1,6 @@
 // The column at the side, the head line and the clock.
 
+import { hasBeliefs } from "./beliefs.js";
 import { $, element, setTerms } from "./dom.js";
 import { eventWords, manyWords, ofRobot, seconds, valuesOf } from "./words.js";
 
@@ -158,8 +159,9 @@ function eventsUntil(events, at) {
 
 export function showChoices({ run, shown }) {
   $("robot").value = shown.robot;
-  for (const name of ["follow", "lidar", "trails", "goals", "names"]) $(name).setAttribute("aria-pressed", String(shown[name]));
+  for (const name of ["follow", "lidar", "trails", "goals", "names", "belief"]) $(name).setAttribute("aria-pressed", String(shown[name]));
   $("follow").disabled = shown.robot < 0;
+  $("belief").hidden = !hasBeliefs(run);
   const lidars = run.lidars.get(shown.robot) ?? [], told = $("scannote");
   $("lidar").disabled = !lidars.length;
   told.hidden = !(shown.lidar && lidars.length);

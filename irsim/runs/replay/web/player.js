@@ -24,7 +24,7 @@ export const player = {
   chosenTheme: null,
   playing: false,
   seconds: 0,
-  shown: { at: 0, robot: -1, follow: false, lidar: true, trails: true, goals: true, names: false, speed: 1 },
+  shown: { at: 0, robot: -1, follow: false, lidar: true, trails: true, goals: true, names: false, belief: true, speed: 1 },
   pointer: null,
   frame: 0,
   before: 0,

@@ -22,6 +22,8 @@ export function makeRun({ head, columns }) {
     robots: [],
     goals: makeChanges(count),
     flagged: makeChanges(count),
+    detectors: head.detectors ?? [], // the robot of each
+    seen: makeChanges((head.detectors ?? []).length),
     lidars: new Map(),
     cells: head.grid ? cellsOf(head.grid, columns.cells, columns.unknown) : null,
     paths: head.shapes.map(pathOf),
@@ -32,6 +34,7 @@ export function makeRun({ head, columns }) {
   head.objects.forEach((object, index) => {
     object.index = index;
     object.track ??= -1;
+    object.belief ??= -1;
     object.first = rowOfStep(run, object.from ?? 0);
     if (object.role === "robot") run.robots.push(index);
   });
@@ -124,6 +127,10 @@ function addAllChanges(run, columns, shift) {
   addChanges(run.goals, columns.goal_row, columns.goal_object, shift, (i) =>
     set[i] ? { x: x[i] * quantum, y: y[i] * quantum, heading: heading[i] * turn } : null);
   addChanges(run.flagged, columns.flag_row, columns.flag_object, shift, (i) => flags[i]);
+  const { seen_row: rows, seen_detector: detectors, seen_count: counts, seen_x, seen_y, seen_object } = columns;
+  let next = 0;
+  if (rows) addChanges(run.seen, rows, detectors, shift, (i) =>
+    Array.from({ length: counts[i] }, () => ({ x: seen_x[next] * quantum, y: seen_y[next] * quantum, object: seen_object[next++] })));
 }
 
 /** The value that holds at a row, or what stands for none before the first change. */
@@ -169,10 +176,23 @@ export function timeOfRow(run, at) {
 /** Pose of an object as { x, y, heading }. */
 export function poseAt(run, object, at, out = {}) {
   const { track, pose } = run.objects[object];
-  if (track < 0) {
-    [out.x, out.y, out.heading] = pose;
-    return out;
-  }
+  if (track >= 0) return trackAt(run, track, at, out);
+  [out.x, out.y, out.heading] = pose;
+  return out;
+}
+
+/** Pose that a robot believes to have, or null if it decides from the true one. */
+export function beliefAt(run, object, at) {
+  const { belief } = run.objects[object];
+  return belief < 0 ? null : trackAt(run, belief, at, {});
+}
+
+/** Tracks of other objects that the detectors of a robot report, in its frame. */
+export function seenAt(run, object, at) {
+  return run.detectors.flatMap((carrier, detector) => (carrier === object ? valueAt(run.seen, detector, Math.floor(at), []) : []));
+}
+
+function trackAt(run, track, at, out) {
   const row = Math.min(Math.floor(at), run.rows - 1), share = at - row, i = track * run.stride + row;
   const j = share > 0 && row + 1 < run.rows ? i + 1 : i;
   out.x = run.x[i] + share * (run.x[j] - run.x[i]);

@@ -15,7 +15,7 @@ export function drawMarks(run, colors, ratio) {
   canvas.height = Math.round(height * ratio);
   const context = canvas.getContext("2d");
   context.scale(ratio, ratio);
-  const order = { waypoint: 0, arrival: 1, contact_between_steps: 2, passed_through: 3, collision: 4 }, drawn = new Set();
+  const order = { waypoint: 0, believed_arrival: 1, arrival: 2, contact_between_steps: 3, passed_through: 4, collision: 5 }, drawn = new Set();
   const crowded = run.events.length > width / ROOMY;
   for (const event of [...run.events].sort((a, b) => (order[a.kind] ?? 0) - (order[b.kind] ?? 0))) {
     const x = placeOf(run, event.row, width), y = height / 2 + 1, place = `${Math.round(x)} ${event.kind}`;
@@ -34,9 +34,15 @@ export function drawMarks(run, colors, ratio) {
         continue;
       }
     } else {
-      context.fillStyle = event.kind === "arrival" ? colors.good : colors.muted;
-      if (crowded) context.rect(x - 0.75, y + 1, 1.5, event.kind === "arrival" ? 5 : 3);
-      else context.arc(x, y, event.kind === "arrival" ? 4 : 2, 0, 2 * Math.PI);
+      const believed = event.kind === "believed_arrival", arrival = believed || event.kind === "arrival";
+      context.fillStyle = context.strokeStyle = arrival ? colors.good : colors.muted;
+      context.lineWidth = 1.5;
+      if (crowded) context.rect(x - 0.75, y + 1, 1.5, arrival ? 5 : 3);
+      else context.arc(x, y, believed ? 3.25 : arrival ? 4 : 2, 0, 2 * Math.PI);
+      if (!crowded && believed) { // hollow: only the robot takes it for an arrival
+        context.stroke();
+        continue;
+      }
     }
     context.fill();
   }

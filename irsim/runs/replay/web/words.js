@@ -1,6 +1,6 @@
 // What the page says about objects and events.
 
-import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, hasLeft, isAbsent, poseAt, speedAt, STOPPED, waits } from "./run.js";
+import { ARRIVED, beliefAt, COLLIDED, courseAt, flagsAt, goalAt, hasLeft, isAbsent, poseAt, speedAt, STOPPED, waits } from "./run.js";
 
 const KINDS = {
   collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way", believed_arrival: "believes to be at its goal",
@@ -45,6 +45,11 @@ export function valuesOf(run, index, at) {
     ["position", `${pose.x.toFixed(2)}, ${pose.y.toFixed(2)} m`],
     ["heading", `${turn.toFixed(2)} rad (${degrees(turn)})`],
   ];
+  const belief = beliefAt(run, index, at);
+  if (belief) {
+    const off = metres(Math.hypot(belief.x - pose.x, belief.y - pose.y));
+    pairs.push(["believes", `(${belief.x.toFixed(2)}, ${belief.y.toFixed(2)}), off by ${off}`]);
+  }
   if (object.motion && (object.role === "robot" || object.arrow)) {
     const course = courseAt(run, index, at, NaN);
     pairs.push(["dart", Number.isNaN(course) ? "heading, as it stands" : `along its motion, ${degrees(course)}`]);
