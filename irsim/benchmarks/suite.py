@@ -271,15 +271,19 @@ _POLICY = "the name of a behavior, or a mapping such as {name: orca, timeHorizon
 
 
 class SuiteError(CodedError, ValueError):
-    """A suite file cannot be used; the message lists every problem.
+    """A suite file cannot be used; the message lists every problem."""
 
-    Attributes:
-        diagnostics: The problems with their keys and lines; empty if the problem is not one of the file.
-    """
-
-    def __init__(self, message: str, fix: str, code: str = "bad-suite", diagnostics: Sequence[Diagnostic] = ()) -> None:
+    def __init__(
+        self,
+        message: str,
+        fix: str,
+        code: str = "bad-suite",
+        diagnostics: Sequence[Diagnostic] = (),
+        *,
+        allowed: Sequence[str] = (),
+    ) -> None:
         self.diagnostics = list(diagnostics)
-        super().__init__(code, message, fix)
+        super().__init__(code, message, fix, allowed=allowed)
 
 
 def suite_error(path: Path | str, problems: Sequence[Diagnostic]) -> SuiteError:
@@ -315,7 +319,7 @@ def load_suite(word: str) -> tuple[Suite, Path]:
         raise SuiteError(what, f"{WRITTEN_SUITES[word]} writes {word}.yaml; name that file", "unknown-suite")
     if not path.is_file():
         fix = suggestion(word, known, f"choose one of {', '.join(known)}, or give a file")
-        raise SuiteError(f"there is no suite {clean(word)!r}", fix, "unknown-suite")
+        raise SuiteError(f"there is no suite {clean(word)!r}", fix, "unknown-suite", allowed=known)
     return SUITES.read(load_path(path)), path
 
 

@@ -10,11 +10,9 @@ bridge doctor``. A run says that it is connected to ``peer`` in a ``mode``; ``re
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
 from irsim.bridges.state import Feedback, Motion, WorldState
-from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import CodedError
 from irsim.simulation.scene import SceneDescription
 
@@ -27,13 +25,7 @@ Clock: TypeAlias = Literal["irsim", "external", "wall"]
 
 
 class BridgeError(CodedError, ValueError):
-    """A bridge cannot be opened, or failed; :mod:`irsim.diagnostics.codes.tools` lists its codes.
-
-    Attributes:
-        diagnostics: The problems of options that are not valid, with the same codes as in scenarios.
-    """
-
-    diagnostics: Sequence[Diagnostic] = ()
+    """A bridge cannot be opened, or failed; :mod:`irsim.diagnostics.codes.tools` lists its codes."""
 
 
 class BridgeLostError(BridgeError):

@@ -102,7 +102,7 @@ def find_skills(names: Iterable[str] = (), place: Path | None = None) -> list[Sk
     for name in wanted:
         if name not in known:
             fix = suggestion(name, known, f"choose one of {', '.join(known)}")
-            raise SkillError("unknown-skill", f"there is no skill {name!r}", fix)
+            raise SkillError("unknown-skill", f"there is no skill {name!r}", fix, allowed=list(known))
     return [_read(known[name]) for name in wanted]
 
 

@@ -146,8 +146,8 @@ def _report(error: BaseException, *, as_json: bool) -> int:
         print_error(code, message)
     if as_json:
         data: dict[str, object] = {"code": code, "message": message}
-        if diagnostics := getattr(error, "diagnostics", ()):
-            data["findings"] = [diagnostic.as_dict() for diagnostic in diagnostics]
+        if isinstance(error, IrsimError):
+            data["findings"] = [diagnostic.as_dict() for diagnostic in error.diagnostics]
         try:
             typer.echo(json.dumps({"error": data}, indent=2, default=str))
             sys.stdout.flush()
@@ -164,11 +164,8 @@ def _describe(error: BaseException) -> tuple[str, str, int]:
     if isinstance(error, ScenarioNotFoundError):
         return "file-not-found", str(error), INVALID
     if isinstance(error, IrsimError):
-        code = getattr(error, "code", None)
-        text = str(error)
-        if not code:
-            return "invalid-input", text, INVALID
-        return str(code), text.removeprefix(f"{code}: "), FAILED if code in _FAILURES else INVALID
+        text = str(error).removeprefix(f"{error.code}: ")
+        return error.code, text, FAILED if error.code in _FAILURES else INVALID
     if isinstance(error, MemoryError):
         return "out-of-memory", ": ".join(filter(None, ["not enough memory", said_by_core(error)])) + ".", FAILED
     if is_disk_full(error):

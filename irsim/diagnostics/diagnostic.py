@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal, TypeVar
 
-from irsim.diagnostics.codes import CODES
+from irsim.diagnostics.codes import CODES, TOOL_CODES
 
 __all__ = [
     "SLIP_SIMILARITY",
@@ -49,7 +49,7 @@ class Diagnostic:
     """One finding.
 
     Attributes:
-        code: Kebab-case name from :data:`irsim.diagnostics.codes.CODES`.
+        code: Kebab-case name from :mod:`irsim.diagnostics.codes`.
         severity: ``error`` (will not run as asked), ``warning`` (runs, but likely not what was meant), ``hint``.
         path: Where in the document, e.g. ``("robot", 0, "behavior", "name")``.
         message: One sentence, without the location.
@@ -79,7 +79,7 @@ class Diagnostic:
     file: str | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
-        if self.code not in CODES:
+        if self.code not in CODES and self.code not in TOOL_CODES:
             raise ValueError(f"undocumented diagnostic code {self.code!r}: add it to irsim/diagnostics/codes/")
 
     def as_dict(self) -> dict[str, Any]:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from irsim.diagnostics.diagnostic import Diagnostic
+from irsim.diagnostics.diagnostic import Diagnostic, format_path
+from irsim.diagnostics.report import format_diagnostics
 
 __all__ = [
     "ArgumentError",
@@ -14,6 +14,7 @@ __all__ = [
     "BenchmarkError",
     "CodedError",
     "InputError",
+    "InputTypeError",
     "IrsimError",
     "NotSimulatedError",
     "OverLimitError",
@@ -54,49 +55,58 @@ class IrsimError(PickledWhole, Exception):
 
     Attributes:
         code: Code of the closed list in :mod:`irsim.diagnostics.codes`; of several problems, the code of the first.
-        diagnostics: All problems of a file as data, errors first; empty where the text tells the only one.
+        message: The problem, without the code.
+        fix: The remedy, or None.
+        where: Argument or key that is wrong, or None.
+        allowed: Accepted values, where they are a short list.
     """
 
-    code: str
-    diagnostics: Sequence[Diagnostic] = ()
+    code: str = "invalid-input"
+    message: str = ""
+    fix: str | None = None
+    where: str | None = None
+    allowed: Sequence[str] = ()
+    _problems: list[Diagnostic] | None = None
+
+    def _tell(
+        self, code: str, message: str, fix: str | None, where: str | None = None, allowed: Sequence[str] = ()
+    ) -> None:
+        """Set the attributes; a class may have its own ``where``."""
+        self.code, self.message, self.fix, self.allowed = code, message, fix, tuple(allowed)
+        self.where = self.where if where is None else where
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """All problems of a file as data, errors first; of any other error the one problem."""
+        if self._problems:
+            return self._problems
+        path = (self.where,) if self.where else ()
+        text, allowed, fix = self.message or str(self), self.allowed or None, self.fix or None
+        return [Diagnostic(self.code, "error", path, text, allowed=allowed, fix=fix)]
+
+    @diagnostics.setter
+    def diagnostics(self, problems: Sequence[Diagnostic]) -> None:
+        self._problems = list(problems)
 
 
 class ScenarioError(IrsimError, ValueError):
-    """A scenario that cannot be used, with every problem found.
-
-    Attributes:
-        diagnostics: All findings, errors first; warnings are included.
-    """
-
-    diagnostics: list[Diagnostic]
+    """A scenario that cannot be used: ``diagnostics`` has all findings, errors first, warnings included."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic], source: str | None = None) -> None:
-        from irsim.diagnostics.report import format_diagnostics
-
         self.diagnostics = list(diagnostics)
-        if self.diagnostics:
-            self.code = self.diagnostics[0].code
+        first = diagnostics[0]
+        self._tell(first.code, first.message, first.fix, format_path(first.path))
         self.source = source
-        super().__init__("\n" + format_diagnostics(self.diagnostics, source))
+        super().__init__("\n" + format_diagnostics(diagnostics, source))
 
 
 class CodedError(IrsimError):
-    """An error with a code of the closed list; its text has code, message and fix.
+    """An error whose text has code, message and fix."""
 
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        message: The problem, without the code.
-        fix: The remedy, or None.
-        where: Argument that is wrong, or None.
-    """
-
-    code: str
-    where: str | None = None
-
-    def __init__(self, code: str, message: str, fix: str | None = None, *, where: str | None = None) -> None:
-        self.code, self.message, self.fix = code, message, fix
-        if where is not None:
-            self.where = where
+    def __init__(
+        self, code: str, message: str, fix: str | None = None, *, where: str | None = None, allowed: Sequence[str] = ()
+    ) -> None:
+        self._tell(code, message, fix, where, allowed)
         super().__init__(self._text())
 
     def _text(self) -> str:
@@ -125,8 +135,14 @@ class InputError(CodedError, ValueError):
 
     code = "bad-argument"
 
-    def __init__(self, message: str, fix: str, where: str | None = None) -> None:
-        super().__init__(self.code, message, fix, where=where)
+    def __init__(
+        self, message: str, fix: str | None = None, where: str | None = None, allowed: Sequence[str] = ()
+    ) -> None:
+        super().__init__(self.code, message, fix, where=where, allowed=allowed)
+
+
+class InputTypeError(InputError, TypeError):
+    """An argument of a function has a type that it cannot have."""
 
 
 ArgumentError = InputError
@@ -171,6 +187,10 @@ class PlacementError(ScenarioError):
 
 
 class ScenarioNotFoundError(IrsimError, FileNotFoundError):
-    """No scenario file has that name; the message names the places searched and near matches."""
+    """No scenario file has that name; the text names the places searched and near matches."""
 
     code = "file-not-found"
+
+    def __init__(self, message: str, searched: Sequence[str], advice: Sequence[str], near: Sequence[str]) -> None:
+        self._tell(self.code, message, " ".join(advice), allowed=near)
+        super().__init__("\n".join([f"{message}. Searched:", *(f"  {place}" for place in searched), *advice]))

@@ -140,15 +140,15 @@ class Batch:
     def _impose(self, actions: Floats) -> None:
         robots = len(self.robots)
         if actions.ndim != 3 or actions.shape[0] != self.n or not 1 <= actions.shape[1] <= robots:
-            raise ValueError(f"actions are ({self.n}, up to {robots}, controls), not {actions.shape}")
+            raise InputError(f"actions are ({self.n}, up to {robots}, controls), not {actions.shape}")
         if actions.shape[2] > 3 or actions.shape[2] < max(
             self.scenario.objects[i].vel_dim for i in range(actions.shape[1])
         ):
-            raise ValueError(f"actions have {actions.shape[2]} numbers each; these drives take another number")
+            raise InputError(f"actions have {actions.shape[2]} numbers each; these drives take another number")
         acting, width = actions.shape[1], actions.shape[2]
         given = ~np.isnan(actions[:, :, 0])
         if not np.isfinite(actions[given]).all():
-            raise ValueError("an action is not finite; only NaN in its first component (no action) has a meaning")
+            raise InputError("an action is not finite; only NaN in its first component (no action) has a meaning")
         self._command[:, :acting, :width] = np.where(given[:, :, None], actions, 0.0)
         self._given[:, :acting] = given
 
@@ -202,7 +202,7 @@ class Batch:
         """
         chosen = None if mask is None else np.asarray(mask, dtype=bool)
         if chosen is not None and chosen.shape != (self.n,):
-            raise ValueError(f"mask is ({self.n},), not {chosen.shape}")
+            raise InputError(f"mask is ({self.n},), not {chosen.shape}")
         self._simulation.reset(chosen, next_scene=mask is not None if random is None else random)
 
 
@@ -242,7 +242,7 @@ def batch(
         first = resolved.world.seed if resolved.world.seed is not None else fresh_seed()
         seeds = [first + i for i in range(n)]
     if len(seeds) != n:
-        raise ValueError(f"{len(seeds)} seeds for {n} worlds")
+        raise InputError(f"{len(seeds)} seeds for {n} worlds")
     driver = None if policy is None else open_policy(policy)
     return Batch(resolved, list(seeds), threads or os.cpu_count() or 1, driver)
 

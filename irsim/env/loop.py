@@ -7,6 +7,7 @@ from typing import Any, NoReturn
 
 from irsim.common.arguments import check_steps
 from irsim.common.log import LEVELS
+from irsim.diagnostics.errors import InputError
 from irsim.env.drawing import note_unseen
 from irsim.env.live import drive_by_keyboard
 from irsim.env.queries import get_object_by_name
@@ -45,8 +46,9 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
     simulation = env._simulation
     if env.world_param.step_mode == "external":
         if action is not None:
-            raise ValueError(
-                "step_mode 'external' takes no actions: move the objects with set_state, or set step_mode to 'internal'"
+            raise InputError(
+                "step_mode 'external' takes no actions",
+                "move the objects with set_state, or set step_mode to 'internal'",
             )
         simulation.step_external()
     else:
@@ -65,7 +67,7 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
 
 def _refuse(message: str) -> NoReturn:
     """Refuse surplus actions in a strict environment."""
-    raise ValueError(message)
+    raise InputError(message)
 
 
 def _report_limits(env: EnvState, view: Any, control: Sequence[float]) -> None:
@@ -113,7 +115,7 @@ def rollout(env: EnvState, steps: int, *, until_done: bool = True) -> Rollout:
         until_done: Stop as soon as every robot has arrived or stopped.
     """
     if env.world_param.step_mode == "external":
-        raise ValueError("rollout needs step_mode 'internal'")
+        raise InputError("rollout needs step_mode 'internal'")
     env._ended = False
     result = record_rollout(env._simulation, steps, until_done=until_done)
     _after_step(env)

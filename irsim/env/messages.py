@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from irsim.diagnostics.errors import InputError, InputTypeError
 from irsim.env.queries import robot
 from irsim.env.state import EnvState
 
@@ -89,7 +90,9 @@ def resolve_message_targets(
     if odometry is not msg:
         return [(_named(objects, msg.name, msg.id), odometry)]
     if not (hasattr(odometry, "pose") and hasattr(odometry, "twist")):
-        raise TypeError(f"a message has pose.pose and twist.twist, like odometry of ROS; this is {type(msg).__name__}")
+        raise InputTypeError(
+            f"a message has pose.pose and twist.twist, like odometry of ROS; this is {type(msg).__name__}"
+        )
     return [(default_target(), odometry)]
 
 
@@ -98,5 +101,5 @@ def _named(objects: Sequence[Any], name: str | None, object_id: int | None) -> A
     by_id = [view for view in objects if object_id is not None and view.id == object_id]
     matches = by_name or by_id
     if not matches:
-        raise ValueError(f"no object has the name {name!r} or the id {object_id!r} of this message")
+        raise InputError(f"no object has the name {name!r} or the id {object_id!r} of this message")
     return matches[0]

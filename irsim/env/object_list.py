@@ -12,6 +12,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.compat.objects.view import ScriptObject, views
+from irsim.diagnostics.errors import InputError, InputTypeError
 from irsim.env.policies import drive_again
 from irsim.env.state import EnvState
 from irsim.objects.lifecycle import lone_simulation, move_in, move_out, renumber, restore
@@ -68,11 +69,11 @@ def add_objects(env: EnvState, objs: Iterable[ScriptObject]) -> None:
     names = {view.name for view in env._objects}
     for view in newcomers:
         if not isinstance(view, ObjectView):
-            raise TypeError(f"only objects can be added, as create_robot makes them, not {view!r}")
+            raise InputTypeError(f"only objects can be added, as create_robot makes them, not {view!r}")
         if view.name in names:
-            raise ValueError(f"object name {view.name!r} already exists: give this one another `name`")
+            raise InputError(f"object name {view.name!r} already exists", "give this one another `name`")
         if view._simulation.objects != 1 or view._simulation is env._simulation:
-            raise ValueError(f"{view.name!r} is in a world already: take it out there first")
+            raise InputError(f"{view.name!r} is in a world already", "take it out there first")
         names.add(view.name)
     taken = {view.id for view in env._objects}
     for view in newcomers:
@@ -128,7 +129,7 @@ def validate_unique_names(env: EnvState) -> None:
     names = [view.name for view in env._objects]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise ValueError(f"object names must be unique; used more than once: {', '.join(twice)}")
+        raise InputError(f"object names must be unique; used more than once: {', '.join(twice)}")
 
 
 def build_tree(env: EnvState) -> None:
@@ -253,7 +254,7 @@ class ObjectList(list[ScriptObject]):
         self._reread()
 
     def _refused(self, *args: Any, **kwargs: Any) -> NoReturn:
-        raise TypeError("`env.objects` has the order of the world: objects can only be appended or removed")
+        raise InputTypeError("`env.objects` has the order of the world: objects can only be appended or removed")
 
     insert = sort = reverse = __setitem__ = __imul__ = _refused
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irsim.common.keywords import answers_misspelt
+from irsim.diagnostics.errors import InputError
 from irsim.env.env_base import Env
 from irsim.env.old.env_base3d import EnvBase3D
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -61,7 +62,7 @@ def make(
     """
     chosen = (projection or "2d").lower()
     if chosen not in ("2d", "3d"):
-        raise ValueError(f"unknown projection {projection!r}: choose '2d' or '3d'")
+        raise InputError(f"unknown projection {projection!r}", "choose '2d' or '3d'")
     kind = EnvBase3D if chosen == "3d" else Env
     return kind(
         world_name, display, disable_all_plot, save_ani, ani_kwargs, full, log_file, log_level, seed, step_mode,

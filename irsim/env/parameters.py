@@ -16,6 +16,7 @@ from irsim.common.installed import script_folder
 from irsim.common.log import Logger
 from irsim.components.maps._grid import merged
 from irsim.components.maps._site import HALF
+from irsim.diagnostics.errors import InputError
 from irsim.objects.base import column
 from irsim.objects.describe import grid_values
 from irsim.objects.lifecycle import amend_world
@@ -44,7 +45,7 @@ def checked_step_mode(mode: str) -> str:
     """
     chosen = str(mode).strip().lower()
     if chosen not in ("internal", "external"):
-        raise ValueError(f"unknown step_mode {mode!r}: choose internal or external")
+        raise InputError(f"unknown step_mode {mode!r}", "choose internal or external")
     return chosen
 
 
@@ -59,7 +60,7 @@ def set_step_time(simulation: Simulation, seconds: float) -> None:
     if value == simulation.scenario.world.step_time:
         return
     if not (math.isfinite(value) and value > 0):
-        raise ValueError(f"the period of a step is a positive number of seconds, not {seconds!r}")
+        raise InputError(f"the period of a step is a positive number of seconds, not {seconds!r}")
     if simulation.count.any():
         refuse("the world", "step_time", "the clock counts steps of one length; `reset()` first, or " + _IN_SCENARIO)
     amend_world(simulation, step_time=value)
@@ -136,7 +137,7 @@ class WorldParam(_Clock):
     @control_mode.setter
     def control_mode(self, mode: str) -> None:
         if mode not in _CONTROL_MODES:
-            raise ValueError(f"unknown control mode {mode!r}: choose {' or '.join(_CONTROL_MODES)}")
+            raise InputError(f"unknown control mode {mode!r}", f"choose {' or '.join(_CONTROL_MODES)}")
         self._control_mode = mode
 
     @property
@@ -147,7 +148,7 @@ class WorldParam(_Clock):
     @collision_mode.setter
     def collision_mode(self, mode: str) -> None:
         if mode not in COLLISION_MODES:
-            raise ValueError(f"unknown collision mode {mode!r}: choose one of {', '.join(COLLISION_MODES)}")
+            raise InputError(f"unknown collision mode {mode!r}", f"choose one of {', '.join(COLLISION_MODES)}")
         self._collision_mode = mode
         self._simulation.world.collision_mode = COLLISION_MODES[mode]
 
@@ -230,7 +231,7 @@ class WorldView(_Clock):
     def sample_time(self, seconds: float) -> None:
         value = float(seconds)
         if not (math.isfinite(value) and value > 0):
-            raise ValueError(f"the period of the frames is a positive number of seconds, not {seconds!r}")
+            raise InputError(f"the period of the frames is a positive number of seconds, not {seconds!r}")
         self._sample_time = value
 
     @property

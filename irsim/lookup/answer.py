@@ -103,7 +103,7 @@ class TopicError(CodedError, LookupError):
     def __init__(self, topic: str, near: Sequence[str]) -> None:
         self.near = list(near)
         fix = f"did you mean {' or '.join(near)}?" if near else "irsim describe lists all topics"
-        super().__init__(self.code, f"{clean(topic)!r} is not a topic", fix)
+        super().__init__(self.code, f"{clean(topic)!r} is not a topic", fix, allowed=self.near)
 
 
 _MAX_BRIEF_KEYS = 8

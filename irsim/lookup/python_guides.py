@@ -12,10 +12,11 @@ PYTHON: dict[str, Guide] = {
         "irsim.IrsimError is the base of every error that irsim raises on purpose. irsim.ScenarioError (with its kinds "
         "PlacementError and NotSimulatedError) has diagnostics, a list of all problems of the file at once, warnings "
         "included: each has code, severity, path (keys and indices), line and column (from 1), message, given, allowed "
-        "and fix; as_dict() is the same for JSON. Every error has diagnostics, and the code of the first. "
-        "All but ScenarioError and ScenarioNotFoundError (also a FileNotFoundError) have message, fix and where, the "
-        "argument that is wrong. Codes are a closed list (`irsim describe codes`), "
-        "and each is a topic. A misspelt keyword argument is a TypeError that names the nearest one.",
+        "and fix; as_dict() is the same for JSON. Every error has code, message, fix, where (the wrong argument) "
+        "and at least one entry of diagnostics. A wrong value or action is InputError, also a ValueError; "
+        "ScenarioNotFoundError is also a FileNotFoundError. Codes are a closed list (`irsim describe codes`), and each "
+        "is a topic. Python's own errors remain: TypeError for a misspelt keyword argument (it names the nearest "
+        "one), IndexError for a robot that does not exist, AttributeError for what cannot be set.",
         "import irsim\n\ntry:\n    irsim.run('scenario.yaml', strict=True)\nexcept irsim.ScenarioError as error:\n"
         "    for one in error.diagnostics:\n        print(one.code, one.path, one.line, one.fix)\n"
         "except irsim.IrsimError as error:\n    print(error.code, error)",

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from irsim.common.arguments import as_given
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import InputError, InputTypeError
 from irsim.objects.base import SimObject
 
 __all__ = ["assign_actions"]
@@ -38,7 +40,8 @@ def _find(objects: Sequence[SimObject], key: Any) -> SimObject:
         names = ", ".join(view.name for view in objects[:8])
         ids = [view.id for view in objects]
         known = f"0 to {len(ids) - 1}" if ids == list(range(len(ids))) else ", ".join(map(str, ids[:20]))
-        raise ValueError(f"no object with id or name {key!r}; ids are {known}, names {names}")
+        fix = suggestion(key, [view.name for view in objects], f"ids are {known}, names {names}")
+        raise InputError(f"no object with id or name {key!r}", fix, "action", [view.name for view in objects])
     return matches[0]
 
 
@@ -66,12 +69,13 @@ def _checked_control(view: SimObject, action: Any) -> list[float]:
     try:
         values = np.asarray(action, dtype=np.float64).reshape(-1)
     except (OverflowError, TypeError, ValueError):
-        raise ValueError(f"an action is numbers, not {as_given(action)}") from None
+        raise InputError(f"an action is numbers, not {as_given(action)}", where="action") from None
     if values.size != view.vel_dim:
         kind = view.kinematics or "static"
-        raise ValueError(f"{view.name!r} ({kind}) takes {view.vel_dim} numbers per action, got {values.size}")
+        what = f"{view.name!r} ({kind}) takes {view.vel_dim} numbers per action, got {values.size}"
+        raise InputError(what, where="action")
     if not np.isfinite(values).all():
-        raise ValueError(f"the action for {view.name!r} is not finite: {values.tolist()}")
+        raise InputError(f"the action for {view.name!r} is not finite: {values.tolist()}", where="action")
     return list(map(float, values))
 
 
@@ -92,14 +96,15 @@ def assign_actions(
         Pairs of object and its control in the command frame.
 
     Raises:
-        TypeError: ``action`` is not a valid type of action.
-        ValueError: A target does not exist, or a control has the wrong size or is not finite.
+        InputTypeError: ``action`` is not a valid type of action.
+        InputError: A target does not exist, or a control has the wrong size or is not finite.
     """
     if action_id is None and objects and (numbers := _plain_control(objects[0], action)) is not None:
         return [(objects[0], numbers)]
     if not isinstance(action, (list, tuple, np.ndarray)):
         if not isinstance(action, Mapping):
-            raise TypeError(f"action must be a list, tuple, ndarray or mapping, got {type(action).__name__}")
+            what = f"action must be a list, tuple, ndarray or mapping, got {type(action).__name__}"
+            raise InputTypeError(what, where="action")
         pairs = [(_find(objects, key), value) for key, value in action.items()]
     elif (one := _is_one(action)) and action_id is None:
         pairs = [(view, action) for view in objects[:1]]

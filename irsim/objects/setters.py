@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 from pydantic import ValidationError
 
+from irsim.diagnostics.errors import InputError, InputTypeError
 from irsim.scenario.messages.translate import option_problems
 
 if TYPE_CHECKING:
@@ -39,14 +40,14 @@ _CHOICES = {"role": ("robot", "obstacle"), "arrive_mode": ("position", "state")}
 
 def _flag(view: SimObject, name: str, value: Any) -> bool:
     if not isinstance(value, (bool, np.bool_, int)):
-        raise TypeError(f"{name!r} of {view.name!r} is True or False, not {value!r}")
+        raise InputTypeError(f"{name!r} of {view.name!r} is True or False, not {value!r}")
     return bool(value)
 
 
 def _length(view: SimObject, name: str, value: Any) -> float:
     number = float(value)
     if not (math.isfinite(number) and number >= 0):
-        raise ValueError(f"{name!r} of {view.name!r} is a number of at least 0, not {value!r}")
+        raise InputError(f"{name!r} of {view.name!r} is a number of at least 0, not {value!r}")
     return number
 
 
@@ -56,16 +57,16 @@ def _optional(view: SimObject, name: str, value: Any) -> float | None:
 
 def _choice(view: SimObject, name: str, value: Any) -> str:
     if value not in _CHOICES[name]:
-        raise ValueError(f"{name!r} of {view.name!r} is {' or '.join(map(repr, _CHOICES[name]))}, not {value!r}")
+        raise InputError(f"{name!r} of {view.name!r} is {' or '.join(map(repr, _CHOICES[name]))}, not {value!r}")
     return str(value)
 
 
 def _limits(view: SimObject, name: str, value: Any) -> list[float]:
     numbers = np.asarray(value, dtype=np.float64).reshape(-1)
     if numbers.size != view.vel_dim or np.isnan(numbers).any():
-        raise ValueError(f"{name!r} of {view.name!r} is {view.vel_dim} numbers, not {value!r}")
+        raise InputError(f"{name!r} of {view.name!r} is {view.vel_dim} numbers, not {value!r}")
     if name == "acce" and (numbers < 0).any():
-        raise ValueError(f"'acce' of {view.name!r} must not be negative: {value!r}")
+        raise InputError(f"'acce' of {view.name!r} must not be negative: {value!r}")
     return [float(v) for v in numbers]
 
 
@@ -174,7 +175,7 @@ def set_state(view: SimObject, state: Any, init: bool) -> None:
     """Set the state of an object; see :meth:`irsim.objects.view.ObjectView.set_state`."""
     values = np.zeros(view.state_dim) if state is None else np.asarray(state, dtype=np.float64).reshape(-1)
     if values.size != view.state_dim or not np.isfinite(values).all():
-        raise ValueError(f"the state of {view.name!r} is {view.state_dim} finite numbers, not {state!r}")
+        raise InputError(f"the state of {view.name!r} is {view.state_dim} finite numbers, not {state!r}")
     simulation, row = view._simulation, view.row
     simulation.pose[row] = values[:3]
     simulation.extra[row, : view.state_dim - 3] = values[3:]
@@ -187,7 +188,7 @@ def set_velocity(view: SimObject, velocity: Any, init: bool) -> None:
     """Set the control of an object; see :meth:`irsim.objects.view.ObjectView.set_velocity`."""
     values = np.zeros(view.vel_dim) if velocity is None else np.asarray(velocity, dtype=np.float64).reshape(-1)
     if values.size != view.vel_dim:
-        raise ValueError(f"the velocity of {view.name!r} is {view.vel_dim} numbers, not {velocity!r}")
+        raise InputError(f"the velocity of {view.name!r} is {view.vel_dim} numbers, not {velocity!r}")
     simulation, row = view._simulation, view.row
     simulation.set_control(row, values)
     simulation.state.rest(row)
@@ -210,7 +211,7 @@ def goal_list(goal: Any) -> list[list[float]]:
     else:
         goals = [np.asarray(goal, dtype=np.float64).reshape(-1).tolist()]
     if any(len(g) not in (2, 3) or not all(map(math.isfinite, g)) for g in goals):
-        raise ValueError(f"a goal is 2 or 3 finite numbers (x, y, theta), not {goal!r}")
+        raise InputError(f"a goal is 2 or 3 finite numbers (x, y, theta), not {goal!r}")
     return goals
 
 
@@ -241,7 +242,7 @@ def changed_options(options: Any, owner: str, **changed: Any) -> Any:
     except ValidationError as error:
         (name,) = changed
         first = option_problems(error, {**options.model_dump(exclude_unset=True), **given}, type(options))[0]
-        raise ValueError(f"{name!r} of {owner}: {first.message}") from None
+        raise InputError(f"{name!r} of {owner}: {first.message}") from None
 
 
 class FixedList(list[Any]):

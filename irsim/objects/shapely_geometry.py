@@ -10,6 +10,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.common.outline import outline
+from irsim.diagnostics.errors import InputError, InputTypeError
 from irsim.objects.view import ObjectView
 
 if TYPE_CHECKING:
@@ -49,9 +50,9 @@ def from_shapely(geometry: Any) -> list[core.Part]:
         elif hasattr(piece, "geoms"):
             parts += from_shapely(piece)
         else:
-            raise ValueError(f"a body is made of polygons and lines, not of a {piece.geom_type}")
+            raise InputError(f"a body is made of polygons and lines, not of a {piece.geom_type}")
     if not parts:
-        raise ValueError("the geometry is empty")
+        raise InputError("the geometry is empty")
     return parts
 
 
@@ -87,7 +88,7 @@ def body_parts(thing: Any) -> list[Any]:
 def _geometry(thing: Any, attribute: str) -> Any:
     geometry = getattr(thing, attribute, thing)
     if not hasattr(geometry, "geom_type"):
-        raise TypeError(f"an obstacle must be an object or a shapely geometry, got {thing!r}")
+        raise InputTypeError(f"an obstacle must be an object or a shapely geometry, got {thing!r}")
     return geometry
 
 
@@ -105,7 +106,7 @@ def _parts(geometry: Any) -> Iterator[Any]:
         for one in geometry.geoms:
             yield from _parts(one)
     else:
-        raise TypeError(f"planners do not support geometries of type {kind!r}")
+        raise InputTypeError(f"planners do not support geometries of type {kind!r}")
 
 
 def _xy(line: Any) -> Floats:

@@ -247,7 +247,7 @@ def _unknown(name: str, root: str | Path | None) -> UnknownPolicyError:
         fix = "plug-ins are not run here; choose a behavior or a file of the workspace"
     if name.endswith(_TORCH_SUFFIXES):
         fix = "irsim convert makes a policy file (.npz) of weights of PyTorch"
-    return UnknownPolicyError(f"there is no policy {clean(name)!r}", fix)
+    return UnknownPolicyError(f"there is no policy {clean(name)!r}", fix, "policy", known)
 
 
 def _made(name: str, maker: Callable[..., Any], options: Mapping[str, Any]) -> Policy:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from irsim.diagnostics.errors import InputError
 from irsim.options.registry import BEHAVIORS
 from irsim.policies.policy import Policy
 
@@ -39,11 +40,11 @@ class PolicyRegistry:
             ValueError: The name belongs to a behavior, to a file, or to another maker.
         """
         if name in (RANDOM, MIXED) or name in BEHAVIORS.installed():
-            raise ValueError(f"{name!r} is built in; give your policy another name")
+            raise InputError(f"{name!r} is built in", "give your policy another name")
         if not name or any(character in name for character in " :{}[],/\\") or name.endswith((".npz", ".onnx")):
-            raise ValueError(f"{name!r} cannot name a policy: use letters, digits, - and _")
+            raise InputError(f"{name!r} cannot name a policy", "use letters, digits, - and _")
         if self._makers.get(name, maker) is not maker:
-            raise ValueError(f"the policy {name!r} is registered already")
+            raise InputError(f"the policy {name!r} is registered already")
         self._makers[name] = maker
 
     def names(self) -> list[str]:

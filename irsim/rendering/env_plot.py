@@ -14,6 +14,7 @@ from PIL import Image
 
 from irsim.common.notebook import Cell, draws_inline
 from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.errors import InputError
 from irsim.graphics.encoding.pixels import to_image
 from irsim.graphics.encoding.png import png_bytes
 from irsim.graphics.figure import window
@@ -262,7 +263,7 @@ class EnvPlot(PlotFormat):
             ValueError: The mode is unknown.
         """
         if mode not in MODES:
-            raise ValueError(f"unknown render mode {mode!r}: choose one of {', '.join(MODES)}")
+            raise InputError(f"unknown render mode {mode!r}", f"choose one of {', '.join(MODES)}")
         self._note_unknown(overrides)
         self._mode, self._overrides = mode, overrides
         self._frame += 1

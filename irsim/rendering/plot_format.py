@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.diagnostics.errors import InputError
 from irsim.graphics.figure.figure import SceneFigure, fitting_size
 from irsim.graphics.figure.overlay import Overlay
 from irsim.graphics.figure.pictures import Pictures
@@ -86,9 +87,9 @@ class PlotFormat:
             ValueError: The size is not positive, or the figure has been made.
         """
         if not longer_side > 0:
-            raise ValueError(f"the size must be positive, not {longer_side}")
+            raise InputError(f"the size must be positive, not {longer_side}")
         if self._figure is not None:
-            raise ValueError("the size can only be set before the first drawing")
+            raise InputError("the size can only be set before the first drawing")
         self._side = longer_side
         self.saved_figure_kwargs["bbox_inches"] = None
         self._fit()

@@ -53,7 +53,7 @@ def locate(name: str | os.PathLike[str] | None = None) -> str:
             return candidate
     given, *others = _unique(os.path.dirname(os.path.abspath(candidate)) for candidate in candidates)
     searched = [given, *filter(_is_of_user, others)]
-    raise ScenarioNotFoundError(_message(wanted, searched))
+    raise _not_found(wanted, searched)
 
 
 def _places() -> list[str]:
@@ -73,22 +73,19 @@ def _unique(items: Iterable[str]) -> list[str]:
     return list(dict.fromkeys(items))
 
 
-def _message(wanted: str, searched: list[str]) -> str:
+def _not_found(wanted: str, searched: list[str]) -> ScenarioNotFoundError:
     from irsim.bundled import templates
 
-    lines = [f"no scenario file '{wanted}'. Searched:"]
-    lines += [f"  {place}" for place in searched]
-    template = templates.meant(wanted)
+    template, near, advice = templates.meant(wanted), near_files(wanted, searched), []
     if template is not None:
-        lines.append(
+        advice.append(
             f"'{template}' is a template: `irsim new {template}` writes {template}.yaml, which can then be used."
         )
-    near = near_files(wanted, searched)
     if near:
-        lines.append("Did you mean " + " or ".join(f"'{path}'" for path in near) + "?")
+        advice.append("Did you mean " + " or ".join(f"'{path}'" for path in near) + "?")
     elif template is None:
-        lines.append("`irsim templates` lists scenarios to start from, and `irsim new NAME` writes one.")
-    return "\n".join(lines)
+        advice.append("`irsim templates` lists scenarios to start from, and `irsim new NAME` writes one.")
+    return ScenarioNotFoundError(f"no scenario file '{wanted}'", searched, advice, near)
 
 
 def near_files(wanted: str, places: Iterable[str]) -> list[str]:

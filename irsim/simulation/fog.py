@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.components.maps._site import HALF
+from irsim.diagnostics.errors import InputError
 from irsim.simulation.occupancy import grid_collision_geometry, grid_occupied
 
 if TYPE_CHECKING:
@@ -90,7 +91,7 @@ class FogMap:
         world_offset: Sequence[float] | None = None,
     ) -> None:
         if not (math.isfinite(resolution) and resolution > 0):
-            raise ValueError(f"the resolution of a fog map must be a positive number [m], got {resolution!r}")
+            raise InputError(f"the resolution of a fog map must be a positive number [m], got {resolution!r}")
         self.width, self.height, self.resolution = width, height, resolution
         x, y = (0.0, 0.0) if world_offset is None else world_offset[:2]
         self.world_offset = (float(x), float(y))
@@ -144,7 +145,7 @@ class FogMap:
         if not reach.size:
             return
         if not np.isfinite(reach).all():
-            raise ValueError("ranges must be finite numbers")
+            raise InputError("ranges must be finite numbers")
         step = 0.5 * float(self._size.min())
         along = np.minimum(np.arange(int(reach.max() / step) + 2) * step, reach[:, None])
         self._mark(x + along * np.cos(bearings)[:, None], y + along * np.sin(bearings)[:, None])

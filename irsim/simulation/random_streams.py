@@ -6,6 +6,7 @@ import secrets
 from typing import TYPE_CHECKING
 
 import irsim._core as core
+from irsim.diagnostics.errors import InputError, InputTypeError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,10 +30,10 @@ def check_seed(seed: object) -> int:
         ValueError: The seed is negative or exceeds 64 bits.
     """
     if isinstance(seed, bool) or not hasattr(seed, "__index__"):
-        raise TypeError(f"seed must be a whole number from 0 to 2**64 - 1, got {seed!r}")
+        raise InputTypeError(f"seed must be a whole number from 0 to 2**64 - 1, got {seed!r}")
     value = int(seed.__index__())
     if not 0 <= value <= MAX_SEED:
-        raise ValueError(f"seed must be a whole number from 0 to 2**64 - 1, got {value}")
+        raise InputError(f"seed must be a whole number from 0 to 2**64 - 1, got {value}")
     return value
 
 

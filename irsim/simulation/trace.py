@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.components.sensors._gauges import GaugeOptions
+from irsim.diagnostics.errors import InputError
 from irsim.simulation.build import steps_within
 
 if TYPE_CHECKING:
@@ -183,7 +184,7 @@ def next_rows(simulation: Simulation, steps: int, *, until_done: bool = True, sc
     rows at once, which is faster.
     """
     if steps < 0:
-        raise ValueError(f"steps must be 0 or more, got {steps}")
+        raise InputError(f"steps must be 0 or more, got {steps}")
     begin = int(simulation.count[0])
     if not simulation.in_python:
         kept = core.rollout(simulation.world, simulation.state, steps, until_done=until_done, returns=scans)

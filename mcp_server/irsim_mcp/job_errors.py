@@ -35,10 +35,7 @@ def error_data(error: Exception) -> dict[str, Any]:
     if isinstance(error, ScenarioNotFoundError):
         return {"code": "file-not-found", "what": "the scenario file no longer exists"}
     if isinstance(error, IrsimError):
-        code = getattr(error, "code", "invalid-input")
-        what = getattr(error, "message", str(error))
-        where = getattr(error, "where", None)
-        return {"code": code, "what": what, "fix": getattr(error, "fix", None), "where": where}
+        return {"code": error.code, "what": error.message or str(error), "fix": error.fix, "where": error.where}
     if isinstance(error, MemoryError):
         what = said_by_core(error) or "the work needs more memory than a worker may use"
         return {"code": "out-of-memory", "what": what, "fix": "use fewer objects, lidar beams or steps"}

@@ -163,6 +163,7 @@ class Template(_Metadata):
                     "unknown-parameter",
                     f"{self.name} has no parameter {name!r}; it has {known}.",
                     suggestion(name, self.parameters, None),
+                    allowed=list(self.parameters),
                 )
         return {
             name: parameter.check(name, given.get(name, parameter.default))
@@ -200,6 +201,7 @@ def load(name: str) -> Template:
             "unknown-template",
             f"there is no template {name!r}; choose one of {', '.join(known)}.",
             suggestion(name, known, None),
+            allowed=known,
         )
     return _read(name)
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.components.maps._grid import shades
+from irsim.diagnostics.errors import InputError
 from irsim.graphics.figure import window
 from irsim.graphics.figure.image_layers import FogLayer, GridLayer
 from irsim.graphics.scene.scene import Fog, GridImage
@@ -78,7 +79,7 @@ class EnvPlot(env_plot.EnvPlot):
             ValueError: The mode is unknown.
         """
         if mode not in MODES:
-            raise ValueError(f"unknown mode {mode!r}: choose one of {', '.join(MODES)}")
+            raise InputError(f"unknown mode {mode!r}", f"choose one of {', '.join(MODES)}")
         chosen: Iterable[Any] = views(self.env.simulation) if objects is None else objects
         for view in chosen:
             if mode == "all" or (mode == "static") == view.static:

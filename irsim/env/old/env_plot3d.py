@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
+from irsim.diagnostics.errors import InputError
 from irsim.env.old.env_plot import EnvPlot
 from irsim.graphics.figure.figure3d import SceneFigure3D
 from irsim.graphics.figure.overlay import Overlay, coordinates
@@ -51,7 +52,7 @@ class _Overlay3D(Overlay):
             return
         rows = np.array([np.asarray(arrow, dtype=float).reshape(-1) for arrow in arrows])
         if rows.size and rows.shape[1] != _ARROW_NUMBERS:
-            raise ValueError(f"a 3-D arrow must have {_ARROW_NUMBERS} numbers (x, y, z, u, v, w), got {rows.shape[1]}")
+            raise InputError(f"a 3-D arrow must have {_ARROW_NUMBERS} numbers (x, y, z, u, v, w), got {rows.shape[1]}")
         if rows.size:
             self._keep([ax.quiver(*rows.T, color=self.palette.quiver if color is None else color, **kwargs)], refresh)
 

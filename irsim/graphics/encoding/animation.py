@@ -16,6 +16,7 @@ from isal import isal_zlib
 from PIL import Image
 
 from irsim.common.files import replacing
+from irsim.diagnostics.errors import InputError
 from irsim.graphics.encoding.gif import Box, GifWriter
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, VIDEO_SUFFIXES
 from irsim.graphics.encoding.pixels import Pixels, fit, from_image
@@ -58,7 +59,7 @@ class AnimationOptions:
 
     def __post_init__(self) -> None:
         if not self.fps > 0:
-            raise ValueError(f"fps must be positive, got {self.fps}")
+            raise InputError(f"fps must be positive, got {self.fps}")
 
     @property
     def last(self) -> float:
@@ -103,7 +104,7 @@ def write_frames(
 def check_suffix(suffix: str) -> None:
     """Raise ValueError if animations cannot have this suffix."""
     if suffix.lower() not in ANIMATION_SUFFIXES:
-        raise ValueError(f"cannot save an animation as {suffix!r}: choose one of {', '.join(ANIMATION_SUFFIXES)}")
+        raise InputError(f"cannot save an animation as {suffix!r}", f"choose one of {', '.join(ANIMATION_SUFFIXES)}")
 
 
 class FrameBuffer:
@@ -162,7 +163,7 @@ class FrameBuffer:
             ValueError: The buffer is empty, or the suffix is not supported.
         """
         if not self.frames:
-            raise ValueError("an animation must have at least one frame, got none")
+            raise InputError("an animation must have at least one frame, got none")
         same = (options.fps, options.loop) == (self.options.fps, self.options.loop)
         if path.suffix.lower() == ".gif" and self._gif is not None and same:
             self._finish(self._gif, options.last)

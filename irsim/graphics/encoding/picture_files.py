@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from irsim.diagnostics.errors import InputError
+
 __all__ = ["MOVING_SUFFIXES", "PICTURE_FORMATS", "VIDEO_SUFFIXES", "picture_path"]
 
 PICTURE_FORMATS = ("png", "jpg", "jpeg", "webp", "tif", "tiff", "svg", "svgz", "pdf", "eps", "ps")
@@ -43,6 +45,6 @@ def picture_path(
         stem, suffix = given, default_format or "png"
     suffix = (format or suffix).lower().lstrip(".")
     if suffix not in PICTURE_FORMATS:
-        raise ValueError(f"cannot save a figure as {suffix!r}: choose one of {', '.join(PICTURE_FORMATS)}")
+        raise InputError(f"cannot save a figure as {suffix!r}", f"choose one of {', '.join(PICTURE_FORMATS)}")
     index = "" if count is None else f"_{count:04d}"
     return Path(folder) / f"{stem}{index}.{suffix}"

@@ -14,6 +14,7 @@ from matplotlib.path import Path
 from matplotlib.text import Text
 from matplotlib.transforms import Affine2D
 
+from irsim.diagnostics.errors import InputError
 from irsim.graphics.figure.canvas import geometry_path, rgba
 from irsim.graphics.figure.image_layers import GridLayer
 from irsim.graphics.figure.pictures import Pictures
@@ -122,7 +123,7 @@ def draw_patch(
     elif shape == "path":
         patch = PathPatch(vertices, **kwargs)
     else:
-        raise ValueError(f"unknown shape {shape!r}: choose circle, rectangle, ellipse, wedge or polygon")
+        raise InputError(f"unknown shape {shape!r}", "choose circle, rectangle, ellipse, wedge or polygon")
     ax.add_patch(patch)
     return patch
 

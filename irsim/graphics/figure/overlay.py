@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import is_color_like
 from numpy.typing import NDArray
 
+from irsim.diagnostics.errors import InputError
 from irsim.graphics.scene.style import Palette
 
 __all__ = ["Overlay", "coordinates"]
@@ -121,5 +122,5 @@ def coordinates(points: Any, min_rows: int) -> NDArray[np.float64]:
         size = min((len(column) for column in columns), default=min_rows)
         rows = np.array([column[:size] for column in columns]).reshape(-1, size).T
     if rows.shape[0] < min_rows:
-        raise ValueError(f"each point must have at least {min_rows} numbers, got {rows.shape[0]}")
+        raise InputError(f"each point must have at least {min_rows} numbers, got {rows.shape[0]}")
     return rows

@@ -25,11 +25,7 @@ TaskSource = str | os.PathLike[str] | Mapping[str, Any] | Task
 
 
 class TaskError(CodedError, ValueError):
-    """A task cannot be used; the message lists every problem.
-
-    Attributes:
-        diagnostics: The problems with their keys and lines; empty if the problem is not one of the file.
-    """
+    """A task cannot be used; the message lists every problem."""
 
     def __init__(self, message: str, fix: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
         self.diagnostics = list(diagnostics)

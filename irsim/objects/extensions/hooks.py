@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.diagnostics.errors import InputError
 from irsim.objects.base import SimObject
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ def limited_control(view: SimObject, velocity: Any) -> Floats:
     if velocity is not None:
         wanted = np.asarray(velocity, dtype=np.float64).reshape(-1)
         if wanted.size != view.vel_dim:
-            raise ValueError(f"a control of this object is {view.vel_dim} numbers, not {velocity!r}")
+            raise InputError(f"a control of this object is {view.vel_dim} numbers, not {velocity!r}")
     elif hooks is not None and row in hooks.decided:
         wanted = hooks.decided[row]
     elif _has_no_behavior(view):

@@ -11,6 +11,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.components.sensors.contact2d import Contact2d
+from irsim.diagnostics.errors import InputError
 from irsim.objects.sensors.drawing import draw_forces
 
 if TYPE_CHECKING:
@@ -199,7 +200,7 @@ def contact_step(
     first = pairs[0][0]
     simulation, world = first._simulation, first.world
     if any((o._simulation, o.world) != (simulation, world) for pair in pairs for o in pair):
-        raise ValueError("contact_step takes objects of one environment")
+        raise InputError("contact_step takes objects of one environment")
     numbers = [(a.row % simulation.objects, b.row % simulation.objects) for a, b in pairs]
     dt = simulation.world.step_time if step_time is None else float(step_time)
     with simulation.resolving_contacts():

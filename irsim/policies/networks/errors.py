@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from irsim.common.records import ContentError
 from irsim.common.text import clean
@@ -76,6 +76,7 @@ class PolicyFileError(CodedError, ValueError):
         more = len(self.problems) - _SHOWN
         shown = "; ".join(map(_text, self.problems[:_SHOWN])) + (f"; and {more} more" if more > 0 else "")
         path = self.problems[0].path
+        self.diagnostics = [replace(problem, file=source) for problem in self.problems]
         super().__init__("policy-file", f"{source}: {shown}", fix, where=format_path(path) if path else None)
 
 
