@@ -147,13 +147,13 @@ def _prose(text: str) -> str:
 
 
 def _table(table: Table) -> str:
-    """A table whose first column is empty where it repeats the row above."""
+    """A table of scenarios and policies, which stay in sight; a scenario is named once where rows repeat it."""
     headings, rows = table
     lines, last = [], None
     for name, *cells in sorted(rows, key=lambda row: not is_summary(row[0])):
         mark = ' class="first"' if name != last else ""
-        shown = [name if name != last else "", *cells]
-        lines.append(f"<tr{mark}>" + "".join(f"<td>{_shown(cell)}</td>" for cell in shown) + "</tr>")
+        shown = [_shown(name if name != last else ""), *map(_unbroken, cells)]
+        lines.append(f"<tr{mark}>" + "".join(f"<td>{cell}</td>" for cell in shown) + "</tr>")
         last = name
     head = "".join(
         f'<th scope="col" aria-sort="none"><button type="button">{_shown(_heading(text))}</button></th>'
@@ -161,6 +161,11 @@ def _table(table: Table) -> str:
     )
     hint = '<p class="small hint" hidden>The table goes on to the right: scroll it sideways.</p>'
     return f'{hint}<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
+
+
+def _unbroken(cell: str) -> str:
+    """A cell as HTML, whose interval stays in one line."""
+    return re.sub(r"\([^()]* to [^()]*\)", r'<span class="whole">\g<0></span>', _shown(cell))
 
 
 def _episode(one: Shown) -> str:
@@ -178,30 +183,36 @@ for (const wide of document.querySelectorAll(".wide")) {
     wide.previousElementSibling.hidden = !more;
     more ? wide.setAttribute("tabindex", "0") : wide.removeAttribute("tabindex");  // so that keys scroll it, too
   };
-  new ResizeObserver(say).observe(wide);
-  say();
+  const [first] = wide.firstChild.tHead.rows[0].cells;  // the policies stand still beside the scenarios
+  const place = () => wide.style.setProperty("--first", first.offsetWidth + "px");
+  for (const [act, seen] of [[say, wide], [place, first]]) { new ResizeObserver(act).observe(seen); act(); }
 }
 for (const table of document.querySelectorAll("table")) {
   const body = table.tBodies[0], heads = [...table.tHead.rows[0].cells];
   for (const row of body.rows)  // rows below a scenario get its name, so that they can move
     if (!row.cells[0].textContent) row.cells[0].textContent = row.previousElementSibling.cells[0].textContent;
+  const written = [...body.rows], next = { none: "ascending", ascending: "descending", descending: "none" };
   heads.forEach((head, column) => head.firstChild.addEventListener("click", () => {
-    const down = head.getAttribute("aria-sort") === "ascending", sign = down ? -1 : 1;
+    const order = next[head.getAttribute("aria-sort")], sign = order === "descending" ? -1 : 1;
     for (const other of heads) other.setAttribute("aria-sort", "none");
-    head.setAttribute("aria-sort", down ? "descending" : "ascending");
+    head.setAttribute("aria-sort", order);
+    table.classList.toggle("sorted", order !== "none");
+    if (order === "none") return body.append(...written);
     const value = row => row.cells[column].textContent, number = text => parseFloat(text.replace(/,/g, ""));
-    const rows = [...body.rows].sort((a, b) => {
+    const rows = [...written].sort((a, b) => {
       const [x, y] = [value(a), value(b)];
       if (!x || !y) return (!x) - (!y);  // empty cells stay at the end
       const [p, q] = [number(x), number(y)];
       return sign * (isNaN(p) || isNaN(q) ? x.localeCompare(y, "en", { numeric: true }) : p - q);
     });
     body.append(...rows);
-    table.classList.add("sorted");
   }));
 }
 """
-"""Says which tables scroll, and sorts a table by the column whose heading is clicked, or pressed with a key."""
+"""Says which tables scroll, and sorts a table by the column whose heading is clicked, or pressed with a key.
+
+The second time sorts the other way, the third time restores the order of the report.
+"""
 _SHELL = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><meta http-equiv="Content-Security-Policy"
 content="default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src 'unsafe-inline';
@@ -216,12 +227,18 @@ body {{ font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 76re
 a {{ color: var(--near); }}
 .wide {{ overflow-x: auto; }}
 table {{ border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px; }}
-th, td {{ padding: .2rem .7rem .2rem 0; text-align: left; white-space: nowrap; }}
-th:first-child, td:first-child {{ position: sticky; left: 0; background: var(--page); }}
-th {{ border-bottom: 1px solid var(--ink); position: sticky; top: 0; }}
-th button {{ font: inherit; font-weight: 600; color: inherit; background: none; border: 0; padding: 0;
+th, td, th button {{ padding: .2rem .7rem .2rem 0; text-align: left; vertical-align: baseline;
+  white-space: nowrap; }}
+th {{ border-bottom: 1px solid var(--ink); padding: 0; }}
+:is(th, td):nth-child(-n+2) {{ position: sticky; left: 0; z-index: 1; background: var(--page); }}
+:is(th, td):nth-child(2) {{ left: var(--first); }}
+th button {{ width: 100%; font: inherit; font-weight: 600; color: inherit; background: none; border: 0;
   cursor: pointer; }}
-th button:focus-visible {{ outline: 2px solid var(--near); outline-offset: 2px; }}
+th button:hover {{ color: var(--near); }}
+th button:focus-visible {{ outline: 2px solid var(--near); outline-offset: -2px; }}
+.whole {{ white-space: nowrap; }}
+@media (max-width: 40rem) {{ :is(th, td):nth-child(-n+2) {{ max-width: 8rem; white-space: normal;
+  overflow-wrap: break-word; font-size: 12px; }} :is(th, td):nth-child(2) {{ max-width: 5.5rem; }} }}
 th[aria-sort=none] button::after {{ content: " \\2195"; color: var(--muted); font-weight: 400; }}
 th[aria-sort=ascending] button::after {{ content: " \\2191"; }}
 th[aria-sort=descending] button::after {{ content: " \\2193"; }}
@@ -229,8 +246,11 @@ tr.first td, .sorted td {{ border-top: 1px solid var(--line); }}
 figure svg text {{ fill: currentColor; }}
 figure svg g:has(> title) {{ cursor: help; }}
 .hint {{ margin: 0 0 .2rem; }}
-@media print {{ .hint {{ display: none; }} .wide {{ overflow: visible; }} td, th {{ white-space: normal; }}
-  th, th:first-child, td:first-child {{ position: static; }} }}
+@page {{ size: landscape; }}
+@media print {{ .hint {{ display: none; }} .wide {{ overflow: visible; }} table {{ font-size: 10px; }}
+  :is(th, td):nth-child(n) {{ position: static; }} th, td, th button {{ white-space: normal; padding-right: .4rem; }}
+  th[aria-sort=none] button::after {{ content: none; }} tr, .episode {{ break-inside: avoid; }} }}
+@media screen and (prefers-color-scheme: dark) {{ figure img {{ filter: brightness(.8); border-radius: 6px; }} }}
 .small, figcaption, .note {{ color: var(--muted); font-size: 13px; }}
 .charts {{ display: grid; grid-template-columns: repeat(auto-fit, minmax(min(30rem, 100%), 1fr)); gap: 1rem; }}
 figure {{ margin: 0 0 1rem; }}

@@ -37,15 +37,30 @@ seconds: 12
 protocols: [freeze]
 policies: {dash: dash, orca: orca}
 """
+SEEN = """[...document.querySelector('table').rows].slice(0, 4).map(row => [...row.cells].slice(0, 2).map(cell => {
+  const { x, y, width, height } = cell.getBoundingClientRect();
+  const over = document.elementFromPoint(x + width - 4, y + height / 2);
+  return cell.contains(over) && x + width < innerWidth / 2 + 60 ? cell.textContent.trim() : "hidden"; }))"""
+"""What is in sight of the first two cells of the first rows."""
 READY = "document.querySelectorAll('th button').length > 0"
+
+
+def reported(folder: Path, suite: str) -> Path:
+    (folder / "walls.yaml").write_text(suite, encoding="utf-8")
+    plan = suite_plan(str(folder / "walls.yaml"), seeds=2)
+    return write_report(run_plan(plan, folder / "run", workers=1), folder / "run").page
 
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("report")
-    (folder / "walls.yaml").write_text(SUITE, encoding="utf-8")
-    plan = suite_plan(str(folder / "walls.yaml"), seeds=2)
-    return write_report(run_plan(plan, folder / "run", workers=1), folder / "run").page
+    return reported(tmp_path_factory.mktemp("report"), SUITE)
+
+
+@pytest.fixture(scope="module")
+def wide_report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A report with rows over all scenarios, and with intervals."""
+    suite = SUITE.replace("circle, center: [5, 5, 0], radius: 4", "random").replace("[freeze]", "[freeze, yield]")
+    return reported(tmp_path_factory.mktemp("report"), suite)
 
 
 def column(page: Any, number: int) -> list[str]:
@@ -74,6 +89,18 @@ def test_a_click_on_a_heading_sorts_and_says_so(report: Path, watched: Watched) 
     assert not watched.problems
 
 
+def test_the_whole_heading_is_a_button_and_a_third_click_restores_the_order(report: Path, watched: Watched) -> None:
+    page = watched.open(report, READY)
+    written = [column(page, number) for number in range(4)]
+    cell = page.locator("th:nth-child(4)").first
+    box = cell.bounding_box()
+    for order in ("ascending", "descending", "none"):
+        page.mouse.click(box["x"] + box["width"] - 3, box["y"] + box["height"] / 2)  # beside the word
+        assert cell.get_attribute("aria-sort") == order
+    assert [column(page, number) for number in range(4)] == written
+    assert page.evaluate("document.querySelector('table').classList.contains('sorted')") is False
+
+
 def test_a_phone_scrolls_tables_and_not_the_page(report: Path, watched: Watched) -> None:
     page = watched.open(report, READY)
     page.set_viewport_size({"width": 390, "height": 800})
@@ -88,6 +115,28 @@ def test_a_phone_scrolls_tables_and_not_the_page(report: Path, watched: Watched)
     assert page.evaluate(left) == before  # the names of the scenarios stay
     page.set_viewport_size({"width": 1600, "height": 800})
     until(page, "document.querySelector('.hint').hidden")
+
+
+def test_a_phone_always_shows_scenario_and_policy(wide_report: Path, watched: Watched) -> None:
+    page = watched.open(wide_report, READY)
+    page.set_viewport_size({"width": 390, "height": 800})
+    for scroll in (0, 150, 400):
+        page.evaluate(f"document.querySelector('.wide').scrollLeft = {scroll}")
+        rows = page.evaluate(SEEN)
+        assert rows[0] == ["scenario", "policy"]
+        assert rows[1:] == [["(all)/freeze", "dash"], ["(all)/freeze", "orca"], ["(all)/yield", "dash"]]
+
+
+def test_a_printed_table_fits_the_sheet_and_breaks_no_interval(wide_report: Path, watched: Watched) -> None:
+    page = watched.open(wide_report, READY)
+    page.set_viewport_size({"width": 1040, "height": 720})  # of A4, sideways
+    page.emulate_media(media="print")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 1040
+    signs = "[...document.querySelectorAll('th button')].map(one => getComputedStyle(one, '::after').content)"
+    assert set(page.evaluate(signs)) == {"none"}
+    lines = "[...document.querySelectorAll('.whole')].map(one => one.getClientRects().length)"
+    assert set(page.evaluate(lines)) == {1}
+    assert page.evaluate("getComputedStyle(document.querySelector('td')).position") == "static"
 
 
 @pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
