@@ -829,6 +829,17 @@ def perlin_cells(
 
 Part = Circle | Polygon | Linestring | RandomCircle | RandomPolygon | Room | GridCells | PerlinCells
 
+class SensorTiming(_Options):
+    """When a sensor measures, and when its data arrive.
+
+    Args:
+        rate: Measurements per second [Hz], the k-th in the first step that ends at k / rate or later; 0: one in each
+            step.
+        latency: Time from a measurement to the step in which the sensor shows it [s], rounded up to steps.
+    """
+
+    def __init__(self, *, rate: float, latency: float) -> None: ...
+
 class ObjectSpec:
     """One object of the template world. All keyword arguments are required.
 
@@ -854,6 +865,7 @@ class ObjectSpec:
         grouped: Whether the behavior belongs to the group and decides for all members at once.
         route: How the object plans a path for its behavior to follow, or None.
         sensors: Options of the sensors, in order; None in the place of one that the core does not compute.
+        timing: Times of each sensor; empty if all measure in each step and their data arrive at once.
         centroid: Centre of mass x, y in the body frame [m], and optionally the square of the radius of gyration [m^2].
             If empty, both follow from the shape, in which overlaps of parts count twice.
         mass: Mass [kg], infinity for an object that cannot be pushed.
@@ -902,6 +914,7 @@ class ObjectSpec:
         grouped: bool,
         route: RouteOptions | None,
         sensors: Sequence[_Options | None],
+        timing: Sequence[SensorTiming],
         centroid: Sequence[float],
         mass: float,
         friction: float,
@@ -1157,6 +1170,9 @@ class State:
     valid: Flags  # same length: 1 where the beam hit something at a (noisy) range within [range_min, range_max]
     beam_angles: Floats  # same length: nominal angle of each beam in the sensor frame
     readings: Floats  # (W * readings_per_world,) numbers of sensors without beams, see World.gauges
+    stamp: (
+        Floats  # (W, sensors) time of measurement of what a sensor shows [s]; `scans`, then `gauges`; NaN: nothing yet
+    )
     velocities: Floats  # (W * velocities_per_world,) measured velocities [m/s], see World.velocity_slices
     explored: Flags  # (W, columns, rows) 1 where the fog is cleared; (W, 0, 0) without fog
     count: NDArray[np.int64]  # (W,) executed steps of the episode
@@ -1389,7 +1405,7 @@ def watch(world: World, state: State) -> None:
     """Log who enters, leaves or crosses a zone, and who comes into or goes out of a field of view."""
 
 def scan(world: World, state: State, index: int, sensor: int, pose: Sequence[float]) -> None:
-    """Let a native sensor of world `index`, numbered as in `World.scans`, take a scan with its carrier at `pose`."""
+    """Let a sensor of world `index`, numbered as in `World.scans`, show a scan taken with its carrier at `pose`."""
 
 def finish(world: World, state: State) -> None:
     """Count the step, append the history, clear `given`.

@@ -307,6 +307,8 @@ EXTENSIONS: dict[str, str] = {
     "entry.perceives": "behaviors and policies decide from an estimate of the pose, or from tracks of other objects",
     **{f"sensor.{lidar}.device": "a lidar that one can buy" for lidar in ("lidar2d", "fmcw_lidar2d")},
     **{f"sensor.{lidar}.realism": "errors of its ranges" for lidar in ("lidar2d", "fmcw_lidar2d")},
+    **{f"sensor.{lidar}.rate": "scans per second" for lidar in ("lidar2d", "fmcw_lidar2d")},
+    **{f"sensor.{lidar}.latency": "age of the scans that programs read" for lidar in ("lidar2d", "fmcw_lidar2d")},
     "behavior.follow": "plan a path and follow it with a local behavior",
     "behavior.rvo.sidestep": "a side on which to pass, or the law of ties (D25)",
     "behavior.rvo.turning": "turns of the drive while it avoids something (D27)",

@@ -38,12 +38,15 @@ struct Sensing {
   Vec2 drift;                         // displacement of the sensor from beam to beam within the part [m]
   double beam_time = 0.0;             // time from beam to beam within the part [s]
   bool earlier = false;               // whether the moving objects are where `ghosts` has them
+  std::int64_t steps = 1;             // since its last measurement; 0: it only keeps its memory up to date
 
   /// The draws of the sensor: lane 0 is the noise of ranges, directions and velocities; lanes 1 to 3 are for
   /// lidars with errors: what becomes of a beam, how, and what holds for an episode.
   Draws draws(std::uint64_t lane = 0) const {
     return Draws(state.key(w), sensor_stream(mount.index), world.number[mount.object], lane);
   }
+  /// Whether its numbers are read.
+  bool measures() const { return steps > 0; }
   /// Factor on the standard deviations of the sensors of the carrier.
   double noise() const { return state.noise_scale[w * world.objects + mount.object]; }
   Footprint footprint(int object) const {
@@ -75,6 +78,21 @@ int memory(const Options&) {
 }
 
 template <class Options, class = void>
+struct HasReach : std::false_type {};
+template <class Options>
+struct HasReach<Options, std::void_t<decltype(Options::range_max)>> : std::true_type {};
+
+/// The range of a beam that hits nothing [m].
+template <class Options>
+double farthest(const Options& options) {
+  if constexpr (HasReach<Options>::value) {
+    return options.range_max;
+  } else {
+    return kInfinity;
+  }
+}
+
+template <class Options, class = void>
 struct HasOffset : std::false_type {};
 template <class Options>
 struct HasOffset<Options, std::void_t<decltype(Options::offset)>> : std::true_type {};
@@ -95,9 +113,16 @@ int sweep_parts(const Options&) {
   return 1;
 }
 
-/// Take one scan of a sensor of world w whose carrier is at `pose`. With `sweeping` its beams are as old as they are.
-void scan(const World& world, State& state, int w, const Scan& sensor, const Pose& pose, Vec2 direction,
-          Workspace& work, bool sweeping);
+/// Take one scan with a sensor of world w, given by its number among those with beams, from a carrier at `pose`, and
+/// show it at once.
+void scan(const World& world, State& state, int w, int number, const Pose& pose, Vec2 direction, Workspace& work);
+/// The ranges that a sensor with beams has measured in this step of world w, though they may not have arrived yet; null
+/// if it did not measure.
+const double* just_measured(const World& world, const State& state, int w, const Scan& sensor);
+/// Let the sensors of an object of a single world show, and have on their way, what the same sensors of an object did
+/// in another one at the same step.
+void go_on_showing(const World& world, State& state, int object, const World& world_before, const State& before,
+                   int object_before);
 /// Write the world-frame velocities of all objects of world w to `work.velocities` if a sensor of the world needs them.
 void update_object_velocities(const World& world, const State& state, int w, Workspace& work);
 

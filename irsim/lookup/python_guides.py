@@ -43,7 +43,8 @@ PYTHON: dict[str, Guide] = {
         "ranges, array (beams,) in m from right (angle_min) to left (angle_max), with range_max where a beam hits "
         "nothing; valid, (beams,), whether it hit something; velocity, (2, beams), of what was hit, with has_velocity "
         "(radial_velocity, (beams,), of a lidar fmcw_lidar2d); angle_min, angle_max and angle_increment in rad; "
-        "range_min and range_max in m; time_increment and scan_time in s; intensities is None. Arrays are copies. "
+        "range_min and range_max in m; time_increment and scan_time in s; intensities is None. A lidar with rate or "
+        "latency has stamp, too: when the scan was measured, in s (sensor.stamp of every sensor). Arrays are copies. "
         "env.get_lidar_offset(id) is where the sensor sits.",
         "import numpy as np\n\nscan = env.get_lidar_scan()\nangles = np.linspace(scan['angle_min'], scan['angle_max'], "
         "len(scan['ranges']))\nnearest = angles[scan['ranges'].argmin()]",

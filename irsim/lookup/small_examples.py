@@ -102,6 +102,8 @@ _VALUES: dict[str, Any] = {
     "range_high": [11, 11],
     "range_low": [1, 1],
     "range_min": 0.1,
+    "rate": 10,
+    "latency": 0.1,
     "accel_range": 39.2,
     "blocked": ["tunnel"],
     "blind": [[2.8, 3.14159]],

@@ -46,6 +46,8 @@ EVERYDAY: dict[str, str] = {
     "robot.sensors.contact2d": "contact sensor, contact forces, tactile, force sensor",
     "robot.sensors": "sensor",
     "robot.sensors.fmcw_lidar2d.motion_compensate": "ego motion, own motion",
+    "robot.sensors.lidar2d.rate": "scan rate, sensor rate, update rate, sampling rate, scans per second",
+    "robot.sensors.lidar2d.latency": "sensor delay, sensor latency, old data, late data, late scans",
     "robot.sensors.lidar2d.noise": "lidar noise, laser noise, sensor noise, measurement noise, noise",
     "robot.kinematics.diff.noise": "motion noise, actuator noise, odometry noise, noise",
     "robot.fov": "field of view, view angle, visual range, sees, seen, visible, visibility, surveillance, guard, "

@@ -146,6 +146,7 @@ def build_object(
         grouped=group_behavior is not None,
         route=kernels.route,
         sensors=kernels.sensors,
+        timing=kernels.timing,
         centroid=compound_body(kernels.parts) if contact and len(kernels.parts) > 1 else [],
         mass=record.mass,
         friction=record.friction,

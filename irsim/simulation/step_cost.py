@@ -162,7 +162,8 @@ def _scan_time(scenario: ResolvedScenario, sensor: Any, row: int, near: _Nearnes
         longest = min(reach, math.hypot(scenario.world.width, scenario.world.height))
         fog = _FOG_CELL_US * 2 * longest / fog_resolution(scenario)
     beam = _BEAM_US + _BEAM_DEPTH_US * math.sqrt(bodies) + noise + fog
-    return beams * beam + _SCAN_BODY_US * bodies + _SCAN_EDGE_US * edges
+    share = min(1.0, (getattr(sensor, "rate", None) or math.inf) * scenario.world.step_time)
+    return share * (beams * beam + _SCAN_BODY_US * bodies + _SCAN_EDGE_US * edges)
 
 
 def _view_time(record: ObjectRecord, row: int, near: _Nearness) -> float:

@@ -131,6 +131,7 @@ def robot(**overrides: Any) -> core.ObjectSpec:
         "grouped": False,
         "route": None,
         "sensors": [],
+        "timing": [],
     }
     return core.ObjectSpec(**{**options, **overrides})
 

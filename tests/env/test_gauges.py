@@ -40,6 +40,7 @@ def test_sensors_read_by_name(env: Any) -> None:
     assert lidar is env.robot_list[0].lidar
     read = odometry.read()
     assert list(read) == ["x", "y", "theta", "vx", "vy", "yaw_rate", "left", "right"]
+    assert odometry.stamp == pytest.approx(2.0)
     assert read["x"] == pytest.approx(4.0, abs=0.05)
     assert read["vx"] == pytest.approx(1.0)
     assert read["left"] == pytest.approx(2.0 / (2 * math.pi * 0.05), rel=0.02)

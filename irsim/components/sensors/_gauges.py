@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from irsim.components.options import SensorOptions
+from irsim.components.sensors._timing import TimedOptions
 from irsim.options.units import Number
 
 __all__ = ["DriftOptions", "GaugeOptions"]
@@ -16,8 +16,8 @@ PerRootTurn = Annotated[Number, Field(ge=0, le=100, json_schema_extra={"x-unit":
 PerRootRadian = Annotated[Number, Field(ge=0, le=100, json_schema_extra={"x-unit": "rad/sqrt(rad)"})]
 
 
-class GaugeOptions(SensorOptions):
-    """A sensor that reports a few numbers in each step; programs read them by name."""
+class GaugeOptions(TimedOptions):
+    """A sensor that reports a few numbers; programs read them by name."""
 
     reports: ClassVar[tuple[str, ...]] = ()
     """Names of its numbers, in their order; empty if they follow from the options."""

@@ -18,9 +18,10 @@ PerSecond = Annotated[Number, Field(ge=0, le=1000, json_schema_extra={"x-unit": 
 class Detector(GaugeOptions):
     """Detector of people and robots with the tracker behind it: it misses some, and sees what is not there.
 
-    A step detects an object in view with `probability`, which falls to its half at `half_range`. A track goes on for
-    `keep` seconds without detections, at its last velocity. With `perceives: tracks` behaviors and policies decide
-    from the tracks; a false track then takes the place and the shape of an object that is not seen.
+    A step, or a measurement of its `rate`, detects an object in view with `probability`, which falls to its half at
+    `half_range`. A track goes on for `keep` seconds without detections, at its last velocity. With `perceives: tracks`
+    behaviors and policies decide from the tracks; a false track then takes the place and the shape of an object that is
+    not seen.
     """
 
     locates: ClassVar[bool] = True
@@ -42,7 +43,7 @@ class Detector(GaugeOptions):
     targets: Literal["all", "robot", "obstacle"] = "all"
     """Role of the moving objects that it looks for."""
     probability: Fraction = 1.0
-    """Probability of a detection in a step, near and in full sight."""
+    """Probability of a detection in a step or a measurement, near and in full sight."""
     half_range: Annotated[Meters, Field(ge=0)] = 0.0
     """Distance at which the probability has fallen to its half; 0: it does not fall."""
     range_softness: Annotated[Meters, Field(ge=0)] = 0.5
@@ -62,7 +63,8 @@ class Detector(GaugeOptions):
     id_switches: PerSecond = 0.0
     """How often, on average, the two tracks that are nearest to each other take each other's id."""
     keep: Annotated[Seconds, Field(ge=0)] = 0.5
-    """Time for which a track goes on without detections."""
+    """Time for which a track goes on without detections; with a `rate` more than 1 / `rate`, or each
+    measurement begins new tracks."""
     max_tracks: Annotated[Integer, Field(ge=1, le=1000)] = 20
     """Largest number of tracks; nearer ones replace the farthest."""
 

@@ -32,7 +32,7 @@ class Gnss(GaugeOptions):
     offset: Offset = [0.0, 0.0, 0.0]
     """Place of the antenna in the body frame: [x, y, theta]."""
     std: Error = 0.5
-    """Standard deviation of the noise of each coordinate, drawn in each step."""
+    """Standard deviation of the noise of each coordinate, drawn for each reading."""
     drift_std: Error = 2.0
     """Standard deviation, in the long run, of the error that wanders (Gauss-Markov), of each coordinate."""
     drift_time: Annotated[Seconds, Field(gt=0)] = 600.0

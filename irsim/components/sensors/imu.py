@@ -36,7 +36,8 @@ class Imu(GaugeOptions):
     """Inertial measurement unit: yaw rate, and acceleration ahead and aside in the frame of the sensor.
 
     Noise is a density, so it does not depend on the step. The bias of a device that was switched on (`…_bias_std`,
-    drawn once per episode) and its wandering (`…_drift_std`) are two errors. Accelerations are means over two steps.
+    drawn once per episode) and its wandering (`…_drift_std`) are two errors. Accelerations are means over two steps,
+    and with a `rate` all readings are means since the last one.
     """
 
     locates: ClassVar[bool] = True
@@ -50,7 +51,7 @@ class Imu(GaugeOptions):
     offset: Offset = [0.0, 0.0, 0.0]
     """Mounting pose in the body frame: [x, y, theta]; away from the middle it feels turns as accelerations."""
     gyro_noise: Annotated[Number, Field(ge=0, json_schema_extra={"x-unit": "rad/s/sqrt(Hz)"})] = 0.0
-    """Density of the noise of the yaw rate; a step of dt seconds has this over sqrt(dt)."""
+    """Density of the noise of the yaw rate; a reading over t seconds (a step, or 1 / `rate`) has this over sqrt(t)."""
     gyro_bias_std: Rate = 0.0
     """Standard deviation of an offset of the yaw rate that is drawn once per episode."""
     gyro_drift_std: Rate = 0.0

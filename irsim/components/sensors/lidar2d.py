@@ -7,9 +7,9 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 import irsim._core as core
-from irsim.components.options import SensorOptions
 from irsim.components.sensors._devices import DEVICES, DeviceName, with_card
 from irsim.components.sensors._realism import LidarRealism
+from irsim.components.sensors._timing import TimedOptions
 from irsim.options.base import Options
 from irsim.options.colors import Color
 from irsim.options.registry import SENSORS
@@ -26,7 +26,7 @@ class BeamPlot(Options):
     """Colour of the beams; null is the `color` of the sensor."""
 
 
-class Lidar2d(SensorOptions):
+class Lidar2d(TimedOptions):
     """Planar lidar: `number` beams spread over `angle_range`, with a beam at both ends unless `endpoint` is false.
 
     Index 0 is the rightmost.
@@ -35,6 +35,7 @@ class Lidar2d(SensorOptions):
     is_lidar: ClassVar[bool] = True
 
     also_called: ClassVar[dict[str, str]] = {
+        **TimedOptions.also_called,
         "range": "range_max",
         "max_range": "range_max",
         "reach": "range_max",
@@ -76,7 +77,8 @@ class Lidar2d(SensorOptions):
     """Spread the beams over both ends of `angle_range`. With false the last end has no beam, as in NumPy's `linspace`:
     n beams over a full turn are then n directions."""
     scan_time: Annotated[Seconds, Field(ge=0)] = 0.1
-    """Duration of one full turn: it is reported in messages, and counts for `sweep` of `realism`."""
+    """Duration of one full turn: it is reported in messages, and counts for `sweep` of `realism`; `rate` says how often
+    there is a scan."""
     noise: Bool = False
     """Add Gaussian noise to the ranges of beams that hit something."""
     std: Annotated[Meters, Field(ge=0)] = 0.2

@@ -22,8 +22,8 @@ struct BoundState {
   nb::object pose, extra, control, twist, command, commanded, drive, actuated, contact_time, air_time, touching, given,
       arrived, believes_arrived, collided, stopped, radius, vel_min, vel_max, acce, takes_part, size_scale, speed_scale,
       acceleration_scale, noise_scale, delay_scale, lag_scale, latency, level, variant, pace, start_step, appeared,
-      infeasible, between_steps, goal, ranges, hits, valid, beam_angles, velocities, readings, explored, count, scene,
-      noise, seed, failed_placement;
+      infeasible, between_steps, goal, ranges, hits, valid, beam_angles, velocities, readings, stamp, explored, count,
+      scene, noise, seed, failed_placement;
 
   /// The C++ state, after a check that it belongs to this world.
   State& of(const World& named);

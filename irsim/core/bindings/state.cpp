@@ -220,6 +220,7 @@ void bind_state(nb::module_& m) {
       .def_ro("beam_angles", &S::beam_angles)
       .def_ro("velocities", &S::velocities)
       .def_ro("readings", &S::readings)
+      .def_ro("stamp", &S::stamp)
       .def_ro("explored", &S::explored)
       .def_ro("count", &S::count)
       .def_ro("scene", &S::scene)

@@ -146,7 +146,7 @@ void bind_steps(nb::module_& m) {
         Workspace& work = state.workspaces.front();
         place_moving(world, state, w);
         update_object_velocities(world, state, w, work);
-        scan(world, state, w, world.scans[sensor], {pose[0], pose[1], pose[2]}, unit(pose[2]), work, false);
+        scan(world, state, w, sensor, {pose[0], pose[1], pose[2]}, unit(pose[2]), work);
       },
       nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("sensor"), nb::arg("pose"));
   m.def(

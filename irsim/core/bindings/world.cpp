@@ -9,6 +9,7 @@ namespace irsim {
 void bind_world(nb::module_& m) {
   bind_fields<RouteOptions>(m, "RouteOptions");
   bind_fields<Actuation>(m, "Actuation");
+  bind_fields<SensorTiming>(m, "SensorTiming");
   bind_fields<ObjectSpec>(m, "ObjectSpec");
   bind_fields<RandomPlacement>(m, "RandomPlacement");
   bind_fields<CircleCrossing>(m, "CircleCrossing");

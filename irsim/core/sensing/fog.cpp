@@ -109,7 +109,8 @@ void lift_fog(const World& world, State& state, int w, Workspace& work) {
     const Vec2 body = state.heading(row);
     const Vec2 from = pose.position() + rotate({mount.offset[0], mount.offset[1]}, body);
     const Vec2 heading = unit(pose.theta + mount.offset[2]);
-    const double* ranges = state.ranges.data + static_cast<std::size_t>(w) * world.beams_per_world + mount.first;
+    const double* ranges = just_measured(world, state, w, *sensor);
+    if (ranges == nullptr) continue;
     for (int i = 0; i < mount.count; ++i) {
       cells.along(from, rotate({mount.cosine[i], mount.sine[i]}, heading), ranges[i]);
     }

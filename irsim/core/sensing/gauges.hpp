@@ -51,6 +51,20 @@ inline void travel_on(double* pose, const Travel& travel) {
   pose[2] = wrap(pose[2] + travel.turn);
 }
 
+/// Means over the steps since the last reading: the sums of three values, and the number of steps.
+struct SinceReading {
+  double* sums;
+  static constexpr int kNumbers = 4;
+
+  void start() const { std::fill_n(sums, kNumbers, 0.0); }
+  void add(const double (&values)[3]) const {
+    for (int k = 0; k < 3; ++k) sums[k] = sums[3] > 0.0 ? sums[k] + values[k] : values[k];
+    sums[3] += 1.0;
+  }
+  double mean(int k) const { return sums[k] / sums[3]; }
+  double steps() const { return sums[3]; }
+};
+
 /// An error that comes and goes: a Gauss-Markov process of the first order, exact for any step.
 struct Wandering {
   double std;   // in the long run

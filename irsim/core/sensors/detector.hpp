@@ -16,7 +16,7 @@ struct DetectorOptions {
   std::array<double, 3> offset;   // in the body frame [m, m, rad]
   double range_max, angle_range;  // reach [m] and full opening angle [rad]
   Targets targets;
-  double probability;                 // of a detection in a step, near and in full sight
+  double probability;                 // of a detection in a measurement, near and in full sight
   double half_range, range_softness;  // where it has fallen to one half, and how gently [m]; 0: it does not fall
   bool occlusion;                     // whether others hide what stands behind them
   double min_visible;                 // share of an outline that must be in sight
@@ -175,8 +175,9 @@ inline void detector(const DetectorOptions& o, const Sensing& s) {
   } else {
     tracker.coast(dt);
   }
+  if (!s.measures()) return;
   tracker.detect();
-  if (due == Due::step) tracker.mistake(dt);
+  if (due == Due::step) tracker.mistake(dt * static_cast<double>(s.steps));
   tracker.report();
 }
 

@@ -36,8 +36,8 @@ struct ImuOptions {
 inline std::vector<double> beams(const ImuOptions&) { return {}; }
 /// Yaw rate [rad/s], acceleration ahead and aside [m/s^2], sensor frame.
 inline int readings(const ImuOptions&) { return 3; }
-/// Place and velocity of the sensor, and the wandering part of the three biases.
-inline int memory(const ImuOptions&) { return kGaugeMemory + 7; }
+/// Place and velocity of the sensor, the wandering part of the three biases, and what it felt since the last reading.
+inline int memory(const ImuOptions&) { return kGaugeMemory + 7 + SinceReading::kNumbers; }
 
 /// A number within a range, as multiples of a resolution.
 inline double quantised(double value, double resolution, double range) {
@@ -52,6 +52,7 @@ inline void imu(const ImuOptions& o, const Sensing& s) {
   const Due due = take_note(s, travel);
   if (due == Due::no) return;
   double *const place = s.memory + kGaugeMemory, *const velocity = place + 2, *const drift = place + 4;
+  const SinceReading felt{drift + 3};
   const Vec2 at = s.pose.position() + rotate({o.offset[0], o.offset[1]}, s.direction);
   const Wandering gyro{o.gyro_drift_std, o.gyro_drift_time}, accel{o.accel_drift_std, o.accel_drift_time};
   const Draws white = s.draws(), wander = s.draws(1), episode = s.draws(2);
@@ -60,6 +61,7 @@ inline void imu(const ImuOptions& o, const Sensing& s) {
     place[0] = at.x, place[1] = at.y;
     velocity[0] = velocity[1] = 0.0;
     drift[0] = gyro.first(shift[0]), drift[1] = accel.first(shift[1]), drift[2] = accel.first(shift[2]);
+    felt.start();
     std::fill_n(s.readings, 3, 0.0);
     return;
   }
@@ -71,18 +73,20 @@ inline void imu(const ImuOptions& o, const Sensing& s) {
   const Vec2 true_accel = unrotate(change, unit(theta_before + o.offset[2] + o.misalignment_std * episode.normal(5)));
   const double lean_ahead = std::sin(o.tilt_std * episode.normal(6)),
                lean_aside = std::sin(o.tilt_std * episode.normal(7));
+  felt.add({travel.turn / dt, true_accel.x + kGravity * lean_ahead, true_accel.y + kGravity * lean_aside});
+  if (!s.measures()) return;
   const auto noise = white.normals(s.scan_number());
-  const double spread = s.noise() / std::sqrt(dt);
-  const double exact[] = {travel.turn / dt, true_accel.x + kGravity * lean_ahead, true_accel.y + kGravity * lean_aside};
+  const double spread = s.noise() / std::sqrt(felt.steps() * dt);
   for (int k = 0; k < 3; ++k) {
     const bool turns = k == 0;
     const double scale = 1.0 + (turns ? o.gyro_scale_std : o.accel_scale_std) * episode.normal(8 + k);
     const double bias = (turns ? o.gyro_bias_std : o.accel_bias_std) * episode.normal(k);
     const double value =
-        scale * exact[k] + bias + drift[k] + (turns ? o.gyro_noise : o.accel_noise) * spread * noise[k];
+        scale * felt.mean(k) + bias + drift[k] + (turns ? o.gyro_noise : o.accel_noise) * spread * noise[k];
     s.readings[k] =
         quantised(value, turns ? o.gyro_resolution : o.accel_resolution, turns ? o.gyro_range : o.accel_range);
   }
+  felt.start();
 }
 
 }  // namespace irsim

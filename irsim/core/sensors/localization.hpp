@@ -25,10 +25,11 @@ struct LocalizationOptions {
 };
 
 inline std::vector<double> beams(const LocalizationOptions&) { return {}; }
-/// x, y [m], heading [rad], world frame; 1 in the step of a correction.
+/// x, y [m], heading [rad], world frame; 1 at the first reading after a correction.
 inline int readings(const LocalizationOptions&) { return 4; }
-/// The believed pose; the error of the last correction; distance, turn and time since then.
-inline int memory(const LocalizationOptions&) { return kGaugeMemory + 9; }
+/// The believed pose; the error of the last correction; distance, turn and time since then; whether there was one since
+/// the last reading.
+inline int memory(const LocalizationOptions&) { return kGaugeMemory + 10; }
 
 inline void localization(const LocalizationOptions& o, const Sensing& s) {
   Travel travel;
@@ -65,8 +66,13 @@ inline void localization(const LocalizationOptions& o, const Sensing& s) {
     pose[2] = wrap(s.pose.theta + noise * error[2]);
     std::fill_n(since, 3, 0.0);
   }
+  double& corrected = since[3];
+  if (due == Due::start) corrected = 0.0;
+  if (corrects && due == Due::step) corrected = 1.0;
+  if (!s.measures()) return;
   std::copy_n(pose, 3, s.readings);
-  s.readings[3] = corrects && due == Due::step;
+  s.readings[3] = corrected;
+  corrected = 0.0;
 }
 
 }  // namespace irsim

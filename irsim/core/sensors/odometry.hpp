@@ -34,14 +34,15 @@ struct OdometryOptions {
 inline std::vector<double> beams(const OdometryOptions&) { return {}; }
 /// x, y, heading; speeds ahead, aside and yaw rate; ticks, or turns, of the left and the right wheel.
 inline int readings(const OdometryOptions&) { return 8; }
-/// The believed pose, the turns of both wheels, and `Underfoot::unmoved`.
-inline int memory(const OdometryOptions&) { return kGaugeMemory + 8; }
+/// The believed pose, the turns of both wheels, `Underfoot::unmoved`, and the believed speeds since the last reading.
+inline int memory(const OdometryOptions&) { return kGaugeMemory + 8 + SinceReading::kNumbers; }
 
 inline void odometry(const OdometryOptions& o, const Sensing& s) {
   Travel travel;
   const Due due = take_note(s, travel);
   if (due == Due::no) return;
   double *const pose = s.memory + kGaugeMemory, *const turns = pose + 3, *const unmoved = turns + 2;
+  const SinceReading speeds{unmoved + 3};
   if (s.world.wheels_slip) {
     const Vec3 now = s.state.underfoot[s.w * s.world.objects + s.mount.object].unmoved;
     travel.ahead += now[0] - unmoved[0], travel.aside += now[1] - unmoved[1], travel.turn += now[2] - unmoved[2];
@@ -50,6 +51,7 @@ inline void odometry(const OdometryOptions& o, const Sensing& s) {
   if (due == Due::start) {
     pose[0] = s.pose.x, pose[1] = s.pose.y, pose[2] = s.pose.theta;
     turns[0] = turns[1] = 0.0;
+    speeds.start();
     std::copy_n(pose, 3, s.readings);
     std::fill_n(s.readings + 3, 5, 0.0);
     return;
@@ -75,9 +77,12 @@ inline void odometry(const OdometryOptions& o, const Sensing& s) {
   const Travel believed = drift.add(
       {0.5 * (rolled[0] + rolled[1]), scale * travel.aside, (rolled[1] - rolled[0]) / o.track}, draw[0], draw[1]);
   travel_on(pose, believed);
-  std::copy_n(pose, 3, s.readings);
   const double dt = s.world.step_time;
-  s.readings[3] = believed.ahead / dt, s.readings[4] = believed.aside / dt, s.readings[5] = believed.turn / dt;
+  speeds.add({believed.ahead / dt, believed.aside / dt, believed.turn / dt});
+  if (!s.measures()) return;
+  std::copy_n(pose, 3, s.readings);
+  for (int k = 0; k < 3; ++k) s.readings[3 + k] = speeds.mean(k);
+  speeds.start();
   for (int side = 0; side < 2; ++side) {
     s.readings[6 + side] = o.ticks_per_turn > 0 ? std::floor(turns[side] * o.ticks_per_turn) : turns[side];
   }

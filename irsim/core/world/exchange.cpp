@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "phases.hpp"
+#include "sensing.hpp"
 #include "world/features.hpp"
 #include "world/spec.hpp"
 
@@ -68,6 +69,7 @@ void copy_actuators(const World& world, State& to, int row, const Origin& origin
 /// Copy what the sensors of a row remember, and their readings, where they are the same sensors at the same time.
 void copy_readings(const World& world, State& to, int row, const Origin& origin) {
   if (origin.state->count[0] != to.count[0]) return;
+  go_on_showing(world, to, row, *origin.world, *origin.state, origin.object);
   for (const Scan& now : world.gauges) {
     const Mount& mount = now.mount;
     if (mount.object != row) continue;
@@ -75,8 +77,9 @@ void copy_readings(const World& world, State& to, int row, const Origin& origin)
       const Mount& old = before.mount;
       if (old.object != origin.object || old.index != mount.index || old.memory != mount.memory) continue;
       std::copy_n(origin.state->memory.data() + old.first_memory, old.memory, to.memory.data() + mount.first_memory);
-      std::copy_n(origin.state->readings.data + old.first_reading, old.readings,
-                  to.readings.data + mount.first_reading);
+      if (now.times.each_step() && before.times.each_step())
+        std::copy_n(origin.state->readings.data + old.first_reading, old.readings,
+                    to.readings.data + mount.first_reading);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "behaviors.gen.hpp"
+#include "sensing/timetable.hpp"
 #include "sensors.gen.hpp"
 
 namespace irsim {
@@ -22,6 +23,8 @@ struct Scan {
   Sensor sensor;
   Mount mount;
   std::vector<Mount> parts;  // of the beams, which are cast one after the other; empty: all at once
+  Timetable times;
+  double farthest;  // the range of a beam that hits nothing [m]
 };
 
 }  // namespace irsim

@@ -106,7 +106,8 @@ struct Walk {
     all(s.count, s.scene_index, s.noise, s.level, s.variant, s.seed, s.failed_placement);
     all(s.direction, s.direction_of, s.goals, s.routes, s.target, s.opinions, s.detours, s.tied, s.goal_draws);
     all(s.before, s.overshot, s.initial_pose, s.initial_extra, s.initial_control, s.history, s.standings, s.fresh);
-    all(s.readings, s.memory);
+    all(s.readings, s.memory, s.stamp, s.pending.time, s.pending.ranges, s.pending.velocities, s.pending.readings);
+    all(s.pending.hits, s.pending.valid);
     all(s.event_count, s.scenes, s.actuated, s.underfoot, s.queue, s.delay_scale, s.lag_scale);
   }
 

@@ -7,6 +7,7 @@
 #include "behaviors.gen.hpp"
 #include "fields.hpp"
 #include "routes/route.hpp"
+#include "sensing/timetable.hpp"
 #include "sensors.gen.hpp"
 #include "shapes.gen.hpp"
 #include "world/actuation.hpp"
@@ -40,7 +41,8 @@ struct ObjectSpec {
   bool grouped;                       // whether the behavior belongs to the group and decides for all members at once
   std::optional<RouteOptions> route;  // how the object plans a path for its behavior to follow
   std::vector<Sensor> sensors;
-  std::vector<double> centroid;  // x, y in the body frame [m], then squared radius of gyration [m^2]; both optional
+  std::vector<SensorTiming> timing;  // of each sensor; empty: all measure in each step, and their data arrive at once
+  std::vector<double> centroid;      // x, y in the body frame [m], then squared radius of gyration [m^2]; both optional
   double mass, friction, inertia, restitution, tau;  // for contacts; an inertia of NaN follows from shape and mass
   bool driven;                                       // whether the object has a drive, native or in Python
   std::int64_t start_step;                           // steps for which the object stands still at its start
@@ -64,13 +66,13 @@ struct ObjectSpec {
         field("goal_threshold", &S::goal_threshold), field("arrive_mode", &S::arrive_mode),
         field("range_low", &S::range_low), field("range_high", &S::range_high), field("target_roles", &S::target_roles),
         field("behavior", &S::behavior), field("grouped", &S::grouped), field("route", &S::route),
-        field("sensors", &S::sensors), field("centroid", &S::centroid), field("mass", &S::mass),
-        field("friction", &S::friction), field("inertia", &S::inertia), field("restitution", &S::restitution),
-        field("tau", &S::tau), field("driven", &S::driven), field("start_step", &S::start_step),
-        field("appear_step", &S::appear_step), field("vanish_step", &S::vanish_step),
-        field("reflectivity", &S::reflectivity), choice("material", &S::material, "matt", "glass", "mirror"),
-        field("actuation", &S::actuation), field("perceives_estimate", &S::perceives_estimate),
-        field("perceives_tracks", &S::perceives_tracks));
+        field("sensors", &S::sensors), field("timing", &S::timing), field("centroid", &S::centroid),
+        field("mass", &S::mass), field("friction", &S::friction), field("inertia", &S::inertia),
+        field("restitution", &S::restitution), field("tau", &S::tau), field("driven", &S::driven),
+        field("start_step", &S::start_step), field("appear_step", &S::appear_step),
+        field("vanish_step", &S::vanish_step), field("reflectivity", &S::reflectivity),
+        choice("material", &S::material, "matt", "glass", "mirror"), field("actuation", &S::actuation),
+        field("perceives_estimate", &S::perceives_estimate), field("perceives_tracks", &S::perceives_tracks));
   }
 };
 

@@ -111,6 +111,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       valid(static_cast<std::size_t>(worlds) * world.beams_per_world),
       velocities(static_cast<std::size_t>(worlds) * world.velocities_per_world),
       readings(static_cast<std::size_t>(worlds) * world.readings_per_world),
+      stamp(worlds * world.sensors_per_world(), kNone),
       explored(world.fog ? static_cast<std::size_t>(worlds) * world.fog->cells() : 0),
       count(worlds),
       scene_index(worlds),
@@ -119,6 +120,9 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       variant(worlds, -1),
       seed(worlds),
       failed_placement(worlds, -1),
+      pending{Array<double>(worlds * world.pending_times),       Array<double>(worlds * world.pending_beams),
+              Array<double>(worlds * world.pending_velocities),  Array<double>(worlds * world.pending_readings),
+              Array<std::int32_t>(worlds * world.pending_beams), Array<std::uint8_t>(worlds * world.pending_beams)},
       queue(worlds * world.queue_slots),
       direction(rows),
       direction_of(rows, kNone),
@@ -146,6 +150,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       std::copy(scan.mount.angle.begin(), scan.mount.angle.end(),
                 beam_angles.data + static_cast<std::size_t>(w) * world.beams_per_world + scan.mount.first);
     }
+    if (!drawn) show_nothing(world, *this, w);
     if (drawn) draw_scene(world, *this, w, workspaces.front());
   }
 }
@@ -226,6 +231,7 @@ void restart(const World& world, State& state, int w, Workspace& work) {
   scene.contacts.clear();
   for (int i = 0; i < world.objects; ++i) restart_row(world, state, w * world.objects + i);
   place_fixed(world, state, w);
+  show_nothing(world, state, w);
   evaluate(world, state, w, work, true);
   scene.watched = {};
   watch(world, state, w, work);

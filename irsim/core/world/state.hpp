@@ -13,6 +13,7 @@
 #include "random.hpp"
 #include "routes/route.hpp"
 #include "runs/log.hpp"
+#include "sensing/timetable.hpp"
 #include "world/actuation.hpp"
 #include "world/array.hpp"
 #include "world/scene.hpp"
@@ -79,6 +80,7 @@ struct State {
   Array<std::uint8_t> valid;     // 1 where the beam hit something within the limits of its range
   Array<double> velocities;      // (W * velocities_per_world,) measured velocities [m/s]
   Array<double> readings;        // (W * readings_per_world,) numbers that sensors without beams report
+  Array<double> stamp;           // (W * sensors,) time at which what a sensor shows was measured [s]; NaN before that
   Array<std::uint8_t> explored;  // (W * cells of the fog,) 1 where a robot has seen the cell
   // (W,) for each world
   Array<std::int64_t> count;
@@ -88,6 +90,7 @@ struct State {
   Array<std::uint64_t> seed;
   Array<std::int32_t> failed_placement;
 
+  Pending pending;                        // measurements of sensors whose data have not arrived yet
   std::vector<Vec3> queue;                // commands that wait for their dead time, see `Actuators::first`
   std::vector<Vec2> direction;            // (R,) cosine and sine of `direction_of`
   std::vector<double> direction_of;       // (R,) heading for which `direction` was computed [rad]
@@ -160,6 +163,8 @@ inline float returned_range(const State& state, std::size_t beam) {
   return state.valid[beam] ? static_cast<float>(state.ranges[beam]) : std::numeric_limits<float>::infinity();
 }
 
+/// Let the sensors of world w whose data arrive late or now and then show nothing, as before their first data.
+void show_nothing(const World& world, State& state, int w);
 /// Draw shapes, placements and goals of world w for its present seed and scene counter, then `restart` it.
 void draw_scene(const World& world, State& state, int w, Workspace& work);
 /// Draw poses and goals of the random placements of world w. `failed_placement` becomes the first object that did not

@@ -46,6 +46,7 @@ struct Workspace {
   BeamBuffers beams, blockers;
   std::vector<Vec2> velocities;  // velocities of the objects of a world [m/s]
   std::vector<double> extra;     // copy of a row of State::extra
+  std::vector<double> readings;  // of a sensor that does not measure in this step
   Neighbors neighbors;
   MutualForces mutual_forces;
   SocialForces social_forces;

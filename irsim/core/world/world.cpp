@@ -114,6 +114,19 @@ void add_fog_beams(World& world) {
   }
 }
 
+/// The times of a sensor, with places for its measurements on their way.
+Timetable lay_out(World& world, const ObjectSpec& spec, std::size_t k, const Mount& mount) {
+  if (spec.timing.empty()) return {};
+  Timetable made = timetable_of(spec.timing[k], world.step_time);
+  const auto slots = static_cast<std::size_t>(made.slots), beams = static_cast<std::size_t>(mount.reported());
+  made.first_time = world.pending_times, made.first_beam = world.pending_beams;
+  made.first_velocity = world.pending_velocities, made.first_reading = world.pending_readings;
+  world.pending_times += slots, world.pending_beams += slots * beams;
+  world.pending_velocities += slots * beams * static_cast<std::size_t>(mount.velocity_rows);
+  world.pending_readings += slots * static_cast<std::size_t>(mount.readings);
+  return made;
+}
+
 void add_scans(World& world, int object, const ObjectSpec& spec) {
   for (std::size_t k = 0; k < spec.sensors.size(); ++k) {
     if (std::holds_alternative<std::monostate>(spec.sensors[k])) continue;  // this sensor is computed in Python
@@ -127,15 +140,18 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
     });
     world.readings_per_world += mount.readings, world.memory_per_world += mount.memory;
     if (mount.readings > 0) {  // its rays are not reported, so they have no place among the beams of the world
-      world.gauges.push_back({spec.sensors[k], mount, {}});
+      world.gauges.push_back({spec.sensors[k], mount, {}, lay_out(world, spec, k, mount), kInfinity});
       world.detects = world.detects || std::holds_alternative<DetectorOptions>(spec.sensors[k]);
       continue;
     }
     world.beams_per_world += mount.count;
     world.velocities_per_world += mount.count * mount.velocity_rows;
     int parts = 1;
-    with(spec.sensors[k], [&](const auto& options) { parts = std::min(sweep_parts(options), mount.count); });
-    world.scans.push_back({spec.sensors[k], mount, parts > 1 ? split(mount, parts) : std::vector<Mount>()});
+    double reach = kInfinity;
+    with(spec.sensors[k],
+         [&](const auto& options) { parts = std::min(sweep_parts(options), mount.count), reach = farthest(options); });
+    world.scans.push_back({spec.sensors[k], mount, parts > 1 ? split(mount, parts) : std::vector<Mount>(),
+                           lay_out(world, spec, k, mount), reach});
   }
 }
 
@@ -171,6 +187,11 @@ void lay_out_queues(World& world) {
 
 void check(const ObjectSpec& spec) {
   if (spec.parts.empty()) throw std::invalid_argument("an object needs at least one part");
+  if (!spec.timing.empty() && spec.timing.size() != spec.sensors.size())
+    throw std::invalid_argument("there must be one timing for each sensor");
+  if (std::any_of(spec.timing.begin(), spec.timing.end(),
+                  [](const SensorTiming& t) { return !(t.rate >= 0.0 && t.latency >= 0.0 && t.latency < 1e6); }))
+    throw std::invalid_argument("a rate and a latency must not be negative");
   if (spec.angle_range.size() != 2) throw std::invalid_argument("angle_range must have two numbers");
   if (std::isnan(spec.angle_range[0]) || std::isnan(spec.angle_range[1]) || spec.angle_range[0] >= spec.angle_range[1])
     throw std::invalid_argument("angle_range must be an interval");
@@ -307,6 +328,8 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
 }
 
 World::~World() = default;
+
+std::size_t World::sensors_per_world() const { return scans.size() + gauges.size(); }
 
 void World::set_levels(std::vector<Level> given, const std::vector<std::vector<int>>& speeds) {
   if (speeds.size() != static_cast<std::size_t>(objects))

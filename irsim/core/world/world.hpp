@@ -44,6 +44,9 @@ struct Mount {
   int first_memory, memory;           // slice of what the sensors of a world remember
   std::array<double, 3> offset;       // pose in the body frame [m, m, rad]
   std::vector<double> angle, cosine, sine;
+
+  /// Number of beams with data of their own; a sensor with readings only tells what follows from its rays.
+  int reported() const { return readings > 0 ? 0 : count; }
 };
 
 enum CollisionMode { kStop = 0, kUnobstructed = 1, kUnobstructedObstacles = 2, kContact = 3 };
@@ -120,6 +123,7 @@ struct World {
   bool detects = false;                // whether one of them is a detector
   std::vector<Perception> perception;  // (N,) what objects go by; empty if all of them know the truth
   int beams_per_world = 0, velocities_per_world = 0, readings_per_world = 0, memory_per_world = 0;
+  std::size_t pending_times = 0, pending_beams = 0, pending_velocities = 0, pending_readings = 0;  // of each world
   std::size_t queue_slots = 0;  // commands that wait for their dead time, of all objects of a world
   std::optional<Fog> fog;
   std::vector<Mount> fog_beams;  // beams of each view of the fog; empty for views without occlusion
@@ -140,6 +144,9 @@ struct World {
   void set_levels(std::vector<Level> levels, const std::vector<std::vector<int>>& speeds);
   /// Set the variants that levels choose from.
   void set_variants(std::vector<std::shared_ptr<World>> variants);
+
+  /// Number of the sensors of a world: those of `scans`, then those of `gauges`.
+  std::size_t sensors_per_world() const;
 
   /// Cell size of a grid that suits most of these objects [m].
   double cell(const Shapes& of, const std::vector<int>& ids) const;

@@ -16,7 +16,7 @@ __all__ = ["Gauge"]
 
 
 class Gauge:
-    """A sensor of one object that reports a few numbers in each step.
+    """A sensor of one object that reports a few numbers.
 
     Args:
         simulation: The simulation.
@@ -40,29 +40,45 @@ class Gauge:
 
     def attach(self, simulation: Simulation, index: int) -> None:
         """Attach the sensor to the one with this index of the same object in a simulation."""
-        own = [(first, number) for owner, first, number in simulation.gauges if owner == self.parent.index]
-        first, number = own[index]
+        own = [
+            (k, first, number)
+            for k, (owner, first, number) in enumerate(simulation.gauges)
+            if owner == self.parent.index
+        ]
+        place, first, number = own[index]
         first += self.parent.world * simulation.world.readings_per_world
         self._numbers: Floats = simulation.state.readings[first : first + number]
+        self._stamps: Floats = simulation.state.stamp[self.parent.world]
+        self._place = len(simulation.scans) + place
 
     @property
     def data(self) -> Floats:
-        """Copy of the numbers of the last step, (len(names),) or rows of them one after the other."""
+        """Copy of the last numbers that have arrived, (len(names),) or rows of them one after the other.
+
+        They are NaN before the first ones.
+        """
         return self._numbers.copy()
 
-    def read(self) -> dict[str, Any]:
-        """Return the numbers of the last step by name; a sensor that reports rows of them has a list of rows.
+    @property
+    def stamp(self) -> float:
+        """Time at which these numbers were measured [s]; NaN before the first ones."""
+        return float(self._stamps[self._place])
 
-        A detector has ``{"tracks": [{"id": 0.0, "x": 2.1, ...}, ...]}``, without rows that are empty.
+    def read(self) -> dict[str, Any]:
+        """Return the last numbers that have arrived by name; with a `rate` or a `latency` also ``stamp`` [s].
+
+        A sensor that reports rows of numbers has a list of rows: ``{"tracks": [{"id": 0.0, "x": 2.1, ...}, ...]}`` of a
+        detector, without rows that are empty.
         """
+        stamp = {"stamp": self.stamp} if self.options.is_timed else {}
         if not self._table:
-            return dict(zip(self.names, self._numbers.tolist(), strict=True))
+            return {**dict(zip(self.names, self._numbers.tolist(), strict=True)), **stamp}
         rows = self._numbers.reshape(-1, len(self.names))
         kept = rows[np.isfinite(rows[:, 0])]
-        return {self._table: [dict(zip(self.names, row, strict=True)) for row in kept.tolist()]}
+        return {self._table: [dict(zip(self.names, row, strict=True)) for row in kept.tolist()], **stamp}
 
     def step(self, state: Any = None) -> None:
-        """Do nothing: there is one reading in each step.
+        """Do nothing: readings come with the steps of the simulation.
 
         Args:
             state: Ignored.

@@ -32,7 +32,7 @@ _VELOCITY_COLORS = frozenset(
 """Drawing options of an FMCW lidar that are read as arrays."""
 _FIXED = frozenset({
     "parent", "obj_id", "sensor_type", "angle_list", "angle_min", "angle_max", "angle_inc", "time_inc", "range_data",
-    "valid", "hits", "velocity", "lidar_origin", "cast_angles", "state", "radial_velocity",
+    "valid", "hits", "velocity", "stamp", "lidar_origin", "cast_angles", "state", "radial_velocity",
 })  # fmt: skip
 """Attributes that cannot be set."""
 _HINT = "it follows from `number`, `angle_range` and the other options, and from the scan"
@@ -70,6 +70,8 @@ class Lidar2D:
     range_max: float
     angle_range: float
     scan_time: float
+    rate: float | None
+    latency: float
     noise: bool
     std: float
     angle_std: float
@@ -89,9 +91,10 @@ class Lidar2D:
     _valid: NDArray[np.bool_]
     _velocities: Floats
     _no_velocities: Floats
+    _stamps: Floats
     _settings: ClassVar[tuple[str, ...]] = (
         "number", "endpoint", "range_min", "range_max", "angle_range", "scan_time", "noise", "std", "angle_std",
-        "offset", "has_velocity", "realism",
+        "offset", "has_velocity", "realism", "rate", "latency",
     )  # fmt: skip
 
     def __init__(self, simulation: Simulation, parent: SimObject, options: Any, index: int) -> None:
@@ -114,6 +117,7 @@ class Lidar2D:
             simulation.hits[beams],
             simulation.valid[beams].view(np.bool_),
         )
+        own["_stamps"] = simulation.state.stamp[world]
         first, rows = simulation.velocity_slices[index]
         first += world * simulation.world.velocities_per_world
         own["_velocities"] = simulation.state.velocities[first : first + rows * number].reshape(rows, number)
@@ -181,6 +185,11 @@ class Lidar2D:
         return self._simulation.ids[self._hits]
 
     @property
+    def stamp(self) -> float:
+        """Time at which the last scan that has arrived was measured [s]; NaN before the first one."""
+        return float(self._stamps[self._index])
+
+    @property
     def velocity(self) -> Floats:
         """Copy of the world velocities at the hits, (2, number) [m/s]; zeros without ``has_velocity`` or a hit."""
         return (self._velocities if self.has_velocity else self._no_velocities).copy()
@@ -208,7 +217,7 @@ class Lidar2D:
         """
 
     def step(self, state: Any = None) -> None:
-        """Take a new scan.
+        """Take a new scan, which arrives at once, whatever `rate` and `latency` say.
 
         Args:
             state: Pose of the carrier, x, y [m] and heading [rad], in any shape; by default the present one.
@@ -223,10 +232,15 @@ class Lidar2D:
         Returns:
             ``angle_min``, ``angle_max``, ``angle_increment`` [rad], ``time_increment``, ``scan_time`` [s],
             ``range_min``, ``range_max``, ``ranges`` (number,) [m], ``intensities`` None, ``velocity`` (2, number)
-            [m/s], ``valid`` (number,) bool.
+            [m/s], ``valid`` (number,) bool; with a `rate` or a `latency` also ``stamp`` [s].
         """
         velocity = (self._velocities if self.has_velocity else self._no_velocities).copy()
-        return {**self._fixed, "ranges": self._ranges.copy(), "velocity": velocity, "valid": self._valid.copy()}
+        scan = {"ranges": self._ranges.copy(), "velocity": velocity, "valid": self._valid.copy()}
+        return {**self._fixed, **scan, **self._age()}
+
+    def _age(self) -> dict[str, float]:
+        """The key ``stamp`` of a scan that may be old; other scans have the keys of IR-SIM 2.12."""
+        return {"stamp": self.stamp} if self.options.is_timed else {}
 
     def get_points(self) -> Floats | None:
         """Return the points of the valid hits in the sensor frame, (2, K) [m]; None without a hit."""
@@ -351,4 +365,4 @@ class FMCWLidar2D(Lidar2D):
     def get_scan(self) -> dict[str, Any]:
         """Return the scan as a dictionary, with ``radial_velocity`` (number,) [m/s] in place of ``velocity``."""
         scan = {"ranges": self._ranges.copy(), "radial_velocity": self._velocities[0].copy()}
-        return {**self._fixed, **scan, "valid": self._valid.copy()}
+        return {**self._fixed, **scan, "valid": self._valid.copy(), **self._age()}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import irsim._core as core
 from irsim.components.behaviors.follow import Follow
 from irsim.components.sensors._gauges import GaugeOptions
+from irsim.components.sensors._timing import timing_of
 from irsim.options.registry import BEHAVIORS, DISTRIBUTIONS, KINEMATICS, PLANNERS, SENSORS, SHAPES, Registry
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ class Kernels:
         behavior: Options of the behavior that decides for it.
         route: Options of its path under ``follow``.
         sensors: Options of each sensor.
+        timing: Times of each sensor; empty if all measure in each step.
     """
 
     parts: list[Any]
@@ -40,6 +42,7 @@ class Kernels:
     behavior: Any
     route: core.RouteOptions | None
     sensors: list[Any]
+    timing: list[core.SensorTiming]
 
 
 def kernels_of(record: ObjectRecord, group_behavior: BehaviorOptions | None, zones: Sequence[str]) -> Kernels:
@@ -67,7 +70,8 @@ def kernels_of(record: ObjectRecord, group_behavior: BehaviorOptions | None, zon
         drive = kernel_options(KINEMATICS, record.kinematics, **{**limits, "wheelbase": record.wheelbase or 1.0})
         if options is not None and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None:
             behavior = kernel_options(BEHAVIORS, options)
-    return Kernels(parts, drive, behavior, route, [_sensor(options, zones) for options in record.sensors])
+    sensors = [_sensor(options, zones) for options in record.sensors]
+    return Kernels(parts, drive, behavior, route, sensors, timing_of(record.sensors))
 
 
 def _width(parts: Sequence[Any]) -> float:
