@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-import irsim._core as core
 from irsim.components.options import SensorOptions
 from irsim.options.units import Hertz, Seconds
 
-__all__ = ["MOST_LATENCY", "TimedOptions", "timing_of"]
+__all__ = ["MOST_LATENCY", "TimedOptions"]
 
 MOST_LATENCY = 10.0
 """Longest latency [s]; data on their way take memory."""
@@ -39,18 +38,3 @@ class TimedOptions(SensorOptions):
     def is_timed(self) -> bool:
         """Whether what programs read may be old."""
         return self.rate is not None or self.latency > 0
-
-
-def timing_of(sensors: list[Any]) -> list[core.SensorTiming]:
-    """The times of the sensors of an object for the core; an empty list if all measure in each step.
-
-    Args:
-        sensors: Options of each sensor.
-    """
-    times = [
-        (options.rate or 0.0, options.latency) if isinstance(options, TimedOptions) else (0.0, 0.0)
-        for options in sensors
-    ]
-    if not any(isinstance(options, TimedOptions) and options.is_timed for options in sensors):
-        return []
-    return [core.SensorTiming(rate=rate, latency=latency) for rate, latency in times]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import irsim._core as core
 from irsim.components.behaviors.follow import Follow
 from irsim.components.sensors._gauges import GaugeOptions
-from irsim.components.sensors._timing import timing_of
+from irsim.components.sensors._timing import TimedOptions
 from irsim.options.registry import BEHAVIORS, DISTRIBUTIONS, KINEMATICS, PLANNERS, SENSORS, SHAPES, Registry
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def kernels_of(record: ObjectRecord, group_behavior: BehaviorOptions | None, zon
         if options is not None and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None:
             behavior = kernel_options(BEHAVIORS, options)
     sensors = [_sensor(options, zones) for options in record.sensors]
-    return Kernels(parts, drive, behavior, route, sensors, timing_of(record.sensors))
+    return Kernels(parts, drive, behavior, route, sensors, _timing(record.sensors))
 
 
 def _width(parts: Sequence[Any]) -> float:
@@ -91,6 +91,13 @@ def _sensor(options: Any, zones: Sequence[str]) -> Any:
         spaces = max(1, options.number - options.endpoint)
         errors = realism.kernel(options.range_max, options.angle_range / spaces, options.scan_time)
     return kernel_options(SENSORS, options, realism=errors)
+
+
+def _timing(sensors: Sequence[Any]) -> list[core.SensorTiming]:
+    """When sensors measure and their data arrive; an empty list if all measure in each step."""
+    times = [(one.rate or 0.0, one.latency) if isinstance(one, TimedOptions) else (0.0, 0.0) for one in sensors]
+    late = any(rate > 0 or latency > 0 for rate, latency in times)
+    return [core.SensorTiming(rate=rate, latency=latency) for rate, latency in times] if late else []
 
 
 def parts_of(shape: Any) -> list[Any]:
