@@ -135,7 +135,7 @@ class KinematicsOptions(Options):
     slips: ClassVar[bool] = False
     """Whether the body moves otherwise than its controls say, such as wheels that slip or that need time."""
     feels: ClassVar[tuple[str, ...]] = ()
-    """What the ground of a zone changes: `slip`, `grip` or `surface`. Drives of user code feel none of it."""
+    """The changes by the ground of a zone: `slip`, `grip` or `surface`. Drives of user code feel none of it."""
     coasts: ClassVar[bool] = False
     """Whether its speeds are states of their own, which need time to change; contacts cannot push such a body."""
     usual_vel_max: ClassVar[tuple[float, ...]] = ()

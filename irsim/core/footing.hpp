@@ -1,4 +1,4 @@
-// What the ground does to a wheel.
+// The effect of the ground on a wheel.
 #pragma once
 
 #include <array>

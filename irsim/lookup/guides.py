@@ -229,7 +229,7 @@ GUIDES: dict[str, Guide] = {
         "an area that a robot stays out of",
         "Name the area in world.zones, and the zone under `avoid` of follow: the zone is then solid for this robot "
         "alone, and the run says who else entered it. For people who must keep their distance, make the circle larger. "
-        "Without `avoid` a zone is no obstacle. `within` of follow is the opposite: the area that the path stays in. "
+        "Without `avoid` a zone is not an obstacle. `within` of follow is the opposite: the area of the path. "
         "Random objects keep clear of a point or an object with `keep_clear` of the distribution random.",
         "world: {zones: [{name: talk, circle: {center: [6, 6], radius: 1.2}}]}\n"
         "robot: {state: [6, 1, 1.57], goal: [6, 11], behavior: {name: follow, local: {name: orca}, avoid: [talk]}}",

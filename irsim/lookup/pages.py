@@ -119,15 +119,13 @@ def _shapes(source: _Source) -> str:
 
 
 def _sensors(source: _Source) -> str:
-    others = {**DEPTH_CAMERAS, **SONARS, **INFRARED}
     return (
         "`sensors: [{name: …}, …]`, a list. Lidars see all robots and obstacles that are not `unobstructed`.\n\n"
         + _components(source, "sensor", among=lambda options: not _locates(options))
         + "\n\nSensors that tell a robot where it is, how it moves and where others are have a page of their own: "
         "[perception.md](perception.md)."
-        + "\n\nErrors of lidars beyond Gaussian noise, and lidars that one can buy, are in [lidars.md](lidars.md).\n\n"
-        + f"## Other range sensors that one can buy: `device`\n\n{_devices(others)}\n\n"
-        + COLOR
+        + "\n\nErrors of lidars beyond Gaussian noise, and range sensors that one can buy, are in "
+        f"[lidars.md](lidars.md).\n\n{COLOR}"
     )
 
 
@@ -148,6 +146,8 @@ def _lidars(source: _Source) -> str:
         f"## Errors: `realism`\n\n{' '.join((LidarRealism.__doc__ or '').split())}\n\n"
         + _keys(source, "robot.sensors.lidar2d.realism")
         + f"\n\n## Lidars that one can buy: `device`\n\n{_devices(DEVICES)}"
+        + "\n\n## Other range sensors that one can buy: `device`\n\n"
+        + _devices({**DEPTH_CAMERAS, **SONARS, **INFRARED})
     )
 
 

@@ -27,14 +27,14 @@ def meanings(schema: Node, path: tuple[str, ...]) -> list[Key]:
 
     The key ``name``, of which each component has its own, is in :func:`every_name`.
     """
-    found: dict[str, tuple[Key, list[str]]] = {}
+    meanings: dict[str, tuple[Key, list[str]]] = {}
     for name, node in _owners(schema, path).items():
         about = key(schema, path[-1], node)
-        found.setdefault(about.model_dump_json(), (about, []))[1].append(name)
-    if len(found) < 2 or path[-1] == "name":
+        meanings.setdefault(about.model_dump_json(), (about, []))[1].append(name)
+    if len(meanings) < 2 or path[-1] == "name":
         return []
     lines = []
-    for about, owners in found.values():
+    for about, owners in meanings.values():
         names = [f"{owner}.{path[-1]}" for owner in owners]
         text = f"{about.text}{same_key_of(names[0], names)}"
         lines.append(about.model_copy(update={"name": names[0], "text": text}))

@@ -23,7 +23,7 @@ def kolmogorov(values: np.ndarray, below: Callable[[np.ndarray], np.ndarray]) ->
 
 
 def assert_standard_normal(z: np.ndarray) -> None:
-    """Mean, variance and shape are those of the standard normal distribution."""
+    """Mean, variance and shape are as in the standard normal distribution."""
     count = len(z)
     assert abs(z.mean()) <= 4 / math.sqrt(count)
     assert abs(float(z @ z) - count) <= 4 * math.sqrt(2 * count)

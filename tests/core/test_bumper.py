@@ -68,7 +68,7 @@ def test_what_does_not_obstruct_does_not_press() -> None:
 def test_random_bodies_press_as_shapely_says() -> None:
     rng = np.random.default_rng(3)
     hull = [(-0.3, -0.25), (0.5, -0.2), (0.6, 0.1), (0.1, 0.35), (-0.4, 0.2)]
-    found = np.zeros(4)
+    presses = np.zeros(4)
     for _ in range(300):
         corners = rng.uniform(-0.4, 0.4, (3, 2)) + rng.uniform(-0.9, 0.9, 2)
         other = shapely.Polygon(corners).convex_hull
@@ -87,8 +87,8 @@ def test_random_bodies_press_as_shapely_says() -> None:
         turned = affinity.rotate(other, 0.7, origin=(0, 0), use_radians=True)
         thing = obstacle(parts=[polygon(*np.array(turned.exterior.coords)[:-1].tolist())])
         assert pressed([polygon(*hull)], thing, sensor=bumper(reach=reach), pose=(0, 0, 0.7)) == expected
-        found += expected
-    assert found.min() > 5
+        presses += expected
+    assert presses.min() > 5
 
 
 @pytest.mark.parametrize("restitution", [0.0, 1.0])

@@ -57,7 +57,7 @@ def test_surfaces_at_too_small_a_depth_return_nothing() -> None:
 
 
 def test_without_errors_of_depth_it_is_a_lidar() -> None:
-    """The same draws, too: noise and the errors of `realism` are those of a lidar."""
+    """The same draws, too: noise and the errors of `realism` are as in a lidar."""
     harsh = LidarRealism(dropout=0.1, std_per_meter=0.02, short_share=0.1, divergence=0.02).kernel(10.0, 0.01, 0.1)
     shared: dict[str, Any] = {"angle_range": 1.2, "noise": True, "std": 0.05, "angle_std": 0.02, "realism": harsh}
     for seed in range(3):

@@ -42,7 +42,7 @@ def ahead(**overrides: Any) -> core.Lidar2dOptions:
 
 
 def go(world: core.World, state: core.State, steps: int, look: Callable[[], Any], control: Any = (SPEED, 0.0)) -> Any:
-    """What there is to see at the start and after each step, while the robots drive."""
+    """The data at the start and after each step, while the robots drive."""
     seen = [look()]
     for _ in range(steps):
         command(state, *[control] * world.copies, *[(0.0, 0.0)] * (len(state.pose) - world.copies))
@@ -75,8 +75,8 @@ def test_a_rate_that_does_not_divide_does_not_drift(rate: float) -> None:
         stamps[k] = state.stamp[0, 0]
     due = np.arange(math.ceil(count * DT * rate) + 2) / rate
     expected = np.ceil(due / DT - 1e-7)
-    found = np.unique(np.round(stamps / DT))
-    np.testing.assert_array_equal(found, expected[expected <= count])
+    moments = np.unique(np.round(stamps / DT))
+    np.testing.assert_array_equal(moments, expected[expected <= count])
 
 
 @pytest.mark.parametrize("rate", [50.0, 77.0, 1e6, 0.0])
@@ -201,14 +201,14 @@ def test_noise_of_a_slow_imu_has_the_density_of_a_fast_one(rate: float, axis: in
 def test_noise_of_an_imu_between_the_steps_fits_the_time_since_the_last_reading() -> None:
     """40 Hz in a world of 100 Hz: readings stand for 20 ms or 30 ms."""
     world, state = driving(imu(gyro_noise=0.01), timing=timed((40.0, 0.0)), dt=0.01, walls=False)
-    found: dict[int, list[float]] = {2: [], 3: []}
+    samples: dict[int, list[float]] = {2: [], 3: []}
     before = 0
     for step in range(1, 40_001):
         core.advance(world, state, 1)
         if round(state.stamp[0, 0] * 100) == step:
-            found[step - before].append(state.readings[0])
+            samples[step - before].append(state.readings[0])
             before = step
-    for steps, values in found.items():
+    for steps, values in samples.items():
         assert np.std(values) == pytest.approx(0.01 / math.sqrt(steps * 0.01), rel=4 / math.sqrt(2 * len(values)))
 
 

@@ -61,7 +61,7 @@ PARTS: dict[str, Any] = {
     "searched": ["/"],
     "advice": ["write one"],
 }
-"""What errors are made of, by the names that their constructors have for it."""
+"""The parts that errors are made of, by the names that their constructors have for it."""
 
 
 def classes(root: type[IrsimError]) -> set[type[IrsimError]]:

@@ -95,8 +95,8 @@ def test_a_zone_outside_the_world_is_a_warning() -> None:
 )
 def test_ground_that_no_drive_feels_is_told(ground: str, drive: str, told: str | None) -> None:
     text = f"world: {{zones: [{{name: wet, rectangle: [1, 1, 2, 2], {ground}}}]}}\nrobot: {{kinematics: {drive}}}\n"
-    found = [one for one in read(text).diagnostics if one.code == "ground-unfelt"]
-    assert found[0].message.endswith(told) if told else not found, found
+    unfelt = [one for one in read(text).diagnostics if one.code == "ground-unfelt"]
+    assert unfelt[0].message.endswith(told) if told else not unfelt, unfelt
 
 
 def test_a_line_has_no_ground() -> None:

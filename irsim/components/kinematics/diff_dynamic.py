@@ -63,7 +63,7 @@ class DiffDynamic(KinematicsOptions):
     """Time constant with which the controller of the speeds works."""
     friction: Positive | None = None
     """Coefficient of friction of the wheels: it limits the force of each to this share of half the weight, which
-    `grip` of a zone changes. Null is no limit; in a zone the coefficient is then `grip` itself."""
+    `grip` of a zone changes. Null sets no limit; in a zone the coefficient is then `grip` itself."""
 
 
 KINEMATICS.register(DiffDynamic, kernel=core.DiffDynamicOptions)

@@ -14,8 +14,8 @@ from typing import Any, Literal
 __all__ = ["DEPTH_CAMERAS", "DEVICES", "INFRARED", "SONARS", "Device", "DeviceName", "Source", "with_card"]
 
 DeviceName = Literal[
-    "rplidar_a1", "rplidar_a2", "rplidar_s2", "ust_10lx", "urg_04lx", "tim561", "lms1xx", "lms5xx", "lds_01", "lds_02",
-    "mid_360",
+    "rplidar_a1", "rplidar_a2", "rplidar_s2", "ust_10lx", "urg_04lx", "tim561", "lms1xx", "lms2xx", "lms5xx", "lds_01",
+    "lds_02", "mid_360",
 ]  # fmt: skip
 
 
@@ -160,6 +160,19 @@ DEVICES: Mapping[str, Device] = {
             Source("SICK data sheet of LMS111: 0.5 to 20 m, 18 m at 10 %, 270 degrees, 0.5 degrees at 50 Hz"),
             {"range_min": 0.5, "range_max": 20.0, **_sector(270.0, 541), "scan_time": 0.02,
              "realism.range_dark": 18.0},
+        ),
+    ),
+    "lms2xx": _device(
+        "SICK LMS2xx, as LMS291",
+        (
+            Source("SICK technical description of LMS200/211/221/291: 180 degrees, 0.5 degrees, 26.7 ms, 80 m, 30 m at "
+                   "10 %, systematic error 35 mm, statistical error 10 mm (1 sigma)"),
+            {"range_min": 0.0, "range_max": 80.0, **_sector(180.0, 361), "scan_time": 0.02667, "noise": True,
+             "std": 0.01, "realism.bias_std": 0.0175, "realism.range_dark": 30.0},
+        ),
+        (
+            Source("the log csail.bag of an LMS at MIT CSAIL: all ranges are multiples of 10 mm", "2026-12-01"),
+            {"realism.resolution": 0.01},
         ),
     ),
     "lms5xx": _device(

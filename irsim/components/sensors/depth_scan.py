@@ -38,7 +38,7 @@ class DepthScan(Lidar2d):
     depth_from: Annotated[Meters, Field(ge=0)] = 0.0
     """Depth from which the growth counts."""
     realism: LidarRealism = LidarRealism()
-    """How ranges err beyond that, as those of lidars do."""
+    """How ranges err beyond that, as a lidar does."""
 
     @model_validator(mode="before")
     @classmethod

@@ -36,7 +36,7 @@ class Uwb(GaugeOptions):
     std: Length = 0.0
     """Standard deviation of a range along a free line of sight; usual are 0.03 to 0.1."""
     nlos_bias: Length = 0.0
-    """What each wall or body on the straight way adds to a range; usual are 0.1 to 0.5."""
+    """The length that each wall or body on the straight way adds to a range; usual are 0.1 to 0.5."""
     nlos_std: Length = 0.0
     """Standard deviation that each wall or body adds, as a variance."""
     outlier_share: Share = 0.0

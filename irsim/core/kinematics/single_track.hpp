@@ -63,7 +63,7 @@ constexpr double kRolling = 0.5;   // up to this speed tyres do not slip, and ba
 constexpr double kSpin = 0.5;      // from this slip angle on, angles are no longer small [rad]
 constexpr double kSlipping = 1.0;  // from this speed on the dynamic model alone counts [m/s]
 
-/// What the ground does to a car.
+/// The effect of the ground on a car.
 struct CarFooting {
   double kept = 1.0;               // speed over ground per speed of the wheels
   double front = 1.0, rear = 1.0;  // factors on the friction of the tyres
@@ -138,7 +138,7 @@ inline Lateral blended(const SingleTrackOptions& o, double speed, double psi, co
   return {share * tyres.yaw + (1.0 - share) * wheels.yaw, share * tyres.slip + (1.0 - share) * wheels.slip};
 }
 
-/// Advance steering angle, speed, yaw rate and slip angle. The speed is that of the wheels.
+/// Advance steering angle, speed, yaw rate and slip angle. The speed is the one of the wheels.
 inline SingleTrackStep single_track_part(const SingleTrackOptions& o, Vec3 control, double* extra, double dt,
                                          const CarFooting& ground) {
   double &psi = extra[0], &rolled = extra[1];

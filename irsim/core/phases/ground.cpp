@@ -1,4 +1,4 @@
-// What the ground of zones does to wheels.
+// The effect of the ground of zones on wheels.
 #include "phases.hpp"
 #include "sensing/gauges.hpp"
 #include "world/features.hpp"

@@ -17,7 +17,7 @@ struct Data {
   double *velocities, *readings, *stamp;
 };
 
-/// What a sensor shows; `number` is its place among the sensors of a world.
+/// The data that a sensor shows; `number` is its place among the sensors of a world.
 Data shown(const World& world, const State& state, int w, const Mount& mount, std::size_t number) {
   const auto at = static_cast<std::size_t>(w);
   const std::size_t beam = at * world.beams_per_world + mount.first;

@@ -56,7 +56,7 @@ inline std::uint64_t first_draw_of(const Sensing& s) {
   return 2 * s.scan_number() * static_cast<std::uint64_t>(s.mount.count);
 }
 
-/// Take a scan whose ranges have the errors of `realism`, and those of a depth camera if `depth` is given.
+/// Take a scan whose ranges have the errors of `realism`, and the error of a depth camera if `depth` is given.
 inline void scan_with_errors(const Lidar2dOptions& options, const Sensing& s, const DepthErrors* depth = nullptr) {
   const double std = options.noise && options.std > 0.0 ? options.std : 0.0;
   const RangeLimits limits{options.range_min, options.range_max, std, depth};

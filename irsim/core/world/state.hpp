@@ -127,7 +127,7 @@ struct State {
   /// The route that a row follows; null without one. Routes avoid static objects; behaviors only keep
   /// `Route::wall_radius` off them.
   const Route* route_of(int row) const { return routes.empty() || routes[row].path.empty() ? nullptr : &routes[row]; }
-  /// What the ground does to the two wheels of a row; null if no zone has ground of its own.
+  /// The effect of the ground on the two wheels of a row; null if no zone has ground of its own.
   const Footing* footing(const World& world, int row) const {
     return world.zones.grounds.empty() ? nullptr : underfoot[row].wheel.data();
   }

@@ -145,7 +145,7 @@ struct World {
   /// Set the variants that levels choose from.
   void set_variants(std::vector<std::shared_ptr<World>> variants);
 
-  /// Number of the sensors of a world: those of `scans`, then those of `gauges`.
+  /// Number of the sensors of a world: first `scans`, then `gauges`.
   std::size_t sensors_per_world() const;
 
   /// Cell size of a grid that suits most of these objects [m].

@@ -114,7 +114,7 @@ def velocity_colors(velocity: Floats, look: dict[str, Any]) -> Floats:
 
 
 def draw_cone(gauge: Any) -> list[Mark]:
-    """Return the cone of a sensor that has one, up to its reading; nothing for others.
+    """Return the cone of a sensor that has one, up to its reading; nothing for other sensors.
 
     Args:
         gauge: The :class:`irsim.objects.sensors.gauge.Gauge` of an object.

@@ -33,7 +33,7 @@ class Meta(BaseModel):
 
 
 class GroundFacts(BaseModel):
-    """What the ground of a zone does to wheels."""
+    """The effect of the ground of a zone on wheels."""
 
     slip: Finite = 0.0
     slip_std: Finite = 0.0

@@ -1,4 +1,4 @@
-"""What robots believe, as the replay page reads it: the pose that they decide from, and the tracks of detectors."""
+"""Beliefs of robots, as the replay page reads it: the pose that they decide from, and the tracks of detectors."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Believers:
         return Believers(estimates, [(row, key) for row, key in self.detectors if key in known])
 
     def announce(self, objects: list[dict[str, Any]], first: int) -> dict[str, Any]:
-        """Number the tracks of beliefs, which follow those of what moves; returns entries of the head.
+        """Number the tracks of beliefs, which follow the tracks of moving objects; returns entries of the head.
 
         Args:
             objects: Objects of the page; a robot that goes by an estimate gets the number of its track ``belief``.
@@ -87,7 +87,7 @@ class Believers:
 
 
 def believers_of(simulation: Simulation) -> Believers:
-    """Those of a simulation."""
+    """The believers of a simulation."""
     records = simulation.scenario.objects
     mounted = mounted_gauges(simulation)
     estimates: dict[int, str] = {}

@@ -87,7 +87,7 @@ class Zone(Options):
     grip: Annotated[Number, Field(gt=0, le=2)] = 1.0
     """Factor on the friction of drives with forces, `single_track` and `diff_dynamic`: 0.1 is ice."""
     surface: Surface | None = None
-    """What `skid_steer` drives on: it sets the ICRs and the traction of each side that is on it."""
+    """The ground under `skid_steer`: it sets the ICRs and the traction of each side that is on it."""
 
     @property
     def has_ground(self) -> bool:

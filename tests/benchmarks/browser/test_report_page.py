@@ -41,7 +41,7 @@ SEEN = """[...document.querySelector('table').rows].slice(0, 4).map(row => [...r
   const { x, y, width, height } = cell.getBoundingClientRect();
   const over = document.elementFromPoint(x + width - 4, y + height / 2);
   return cell.contains(over) && x + width < innerWidth / 2 + 60 ? cell.textContent.trim() : "hidden"; }))"""
-"""What is in sight of the first two cells of the first rows."""
+"""The part in sight of the first two cells of the first rows."""
 READY = "document.querySelectorAll('th button').length > 0"
 
 

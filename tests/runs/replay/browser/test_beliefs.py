@@ -1,4 +1,4 @@
-"""What robots believe, on the page of a run."""
+"""Beliefs of robots on the page of a run."""
 
 from __future__ import annotations
 
