@@ -332,10 +332,10 @@ def test_the_command(files) -> None:
     assert all(part in shown.output for part in ("same seeds", "failed: crowd, dash: collision: seed"))
     assert "rvo #2" not in shown.output
     assert re.search(r"\('\w+': collision with '\w+' \d of 3", shown.output)
-    found = re.search(r"failed: crowd, dash: collision: seeds? (\d+)", shown.output)
-    assert found is not None
-    alone = runner.invoke(app, ["benchmark", *files, "--policies", "dash", "--seeds", f"{found[1]}-{found[1]}"]).output
-    assert re.search(rf"failed: crowd, dash: collision: seed {found[1]} \('\w+': collision with '\w+'[,)]", alone)
+    told = re.search(r"failed: crowd, dash: collision: seeds? (\d+)", shown.output)
+    assert told is not None
+    alone = runner.invoke(app, ["benchmark", *files, "--policies", "dash", "--seeds", f"{told[1]}-{told[1]}"]).output
+    assert re.search(rf"failed: crowd, dash: collision: seed {told[1]} \('\w+': collision with '\w+'[,)]", alone)
     assert "1 of 1" not in alone
     told = runner.invoke(app, ["benchmark", files[0], "--behaviors", "dash,rvo", "--seeds", "2-4", "--json"])
     same = irsim.benchmark(files[0], ["dash", "rvo"], [2, 3, 4])
