@@ -840,6 +840,9 @@ class SensorTiming(_Options):
 
     def __init__(self, *, rate: float, latency: float) -> None: ...
 
+def shown_step(timing: SensorTiming, step_time: float, step: int) -> int:
+    """The step in which the data were measured that a sensor shows after a step; -1 if there are none yet."""
+
 class ObjectSpec:
     """One object of the template world. All keyword arguments are required.
 

@@ -73,4 +73,5 @@ def recorded_states(run: Run, every: int = 1, limits: Limits | None = None) -> I
                 collided=trace.collided[row, rows].copy(),
                 stopped=trace.stopped[row, rows].copy(),
                 ranges={key: block[row] for key, block in trace.ranges.items() if row < len(block)},
+                readings={key: block[row] for key, block in trace.readings.items() if row < len(block)},
             )

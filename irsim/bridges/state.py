@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
-from irsim.simulation.trace import sensors
+from irsim.simulation.trace import present_readings, sensors
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
@@ -31,6 +31,8 @@ class WorldState:
         goal: (N, 3) present goal; NaN without one.
         arrived, collided, stopped: (N,) flags.
         ranges: Key of a lidar -> (beams,) ranges [m], infinite for a beam that hit nothing.
+        readings: Key of a sensor that reports numbers -> these by name: a row of :attr:`Trace.readings`.
+        stamps: Key of a lidar or such a sensor -> when it has measured what it shows [s]; NaN: nothing yet.
         paths: Name of a robot -> (K, 2 or 3) the path that it follows, world frame: the one that it has planned, or, if
             its behavior plans none, from where it is through its goals. Only of robots that have one.
     """
@@ -46,6 +48,8 @@ class WorldState:
     stopped: NDArray[np.bool_]
     ranges: Mapping[str, NDArray[np.float32]] = field(default_factory=dict)
     paths: Mapping[str, Floats] = field(default_factory=dict)
+    readings: Mapping[str, Any] = field(default_factory=dict)
+    stamps: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -100,6 +104,8 @@ def world_state(simulation: Simulation, rows: NDArray[np.int64]) -> WorldState:
     measured = np.where(simulation.valid.astype(bool), simulation.ranges, np.inf).astype(np.float32)
     records = simulation.scenario.objects
     paths = {records[row].name: _path(simulation, row) for row in rows.tolist() if records[row].role == "robot"}
+    readings, beams = present_readings(simulation), sensors(simulation)
+    keys = [*(key for key, _ in beams), *readings]
     return WorldState(
         step=int(simulation.count[0]),
         time=simulation.time,
@@ -110,8 +116,10 @@ def world_state(simulation: Simulation, rows: NDArray[np.int64]) -> WorldState:
         arrived=simulation.arrived[rows].astype(bool),
         collided=simulation.collided[rows].astype(bool),
         stopped=simulation.stopped[rows].astype(bool),
-        ranges={key: measured[beams] for key, beams in sensors(simulation)},
+        ranges={key: measured[own] for key, own in beams},
         paths={name: path for name, path in paths.items() if path is not None},
+        readings={key: row[0] for key, row in readings.items()},
+        stamps=dict(zip(keys, simulation.state.stamp[0].tolist(), strict=True)),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -87,7 +87,7 @@ class Odometry(Message):
 
 @dataclass(eq=False)
 class LaserScan(Message):
-    """A scan: angles [rad], times [s], ranges (N,) [m], float32."""
+    """A scan: angles [rad], times [s], ranges (N,) [m], float32; the stamp is that of its first beam."""
 
     ros_type: ClassVar[str] = "sensor_msgs/LaserScan"
 
@@ -110,7 +110,7 @@ class LaserScan(Message):
 
         Args:
             sensor: The lidar.
-            stamp: Simulated time [s] in the header.
+            stamp: Simulated time [s] of its last beam.
             seq: Step number in the header.
             frame_id: Frame in the header; by default the type of the sensor.
             use_inf: As in ``env.get_msg``.
@@ -296,6 +296,10 @@ def _body_twist(obj: Any) -> Twist:
 
 def _scan(lidar: Any, header: Header, use_inf: bool) -> LaserScan:
     scan = lidar.get_scan()
+    if lidar.options.is_timed and math.isfinite(lidar.stamp):
+        header = replace(header, stamp=lidar.stamp)
+    lag = scan["time_increment"] * (len(scan["ranges"]) - 1)
+    header = replace(header, stamp=max(0.0, header.stamp - lag)) if lag else header
     ranges = np.array(scan["ranges"], dtype=np.float32)
     if use_inf:
         hit = lidar.hits >= 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -13,13 +14,15 @@ from irsim.common.arrays import Floats
 from irsim.common.installed import version
 from irsim.common.outline import BodyPart, Cells, Polygon, outline
 from irsim.components.maps._site import HALF, UNKNOWN
+from irsim.components.sensors._gauges import GaugeOptions
 from irsim.objects.drawing.kinds import kind_of
 from irsim.objects.drawing.signs import distinct_colors, shows_motion
 from irsim.objects.views import views
 from irsim.options.colors import rgb
 from irsim.scenario.resolve.resolved import ObjectRecord
-from irsim.simulation.scene import Grid, Lidar, Look, SceneDescription, SceneObject
+from irsim.simulation.scene import Gauge, Grid, Lidar, Look, SceneDescription, SceneObject
 from irsim.simulation.simulation import Simulation
+from irsim.simulation.trace import mounted_gauges
 
 if TYPE_CHECKING:
     from irsim.objects.drawing.scene_builder import SceneBuilder
@@ -92,6 +95,7 @@ def _object(
         static=record.static,
         threshold=record.goal_threshold,
         look=_look(simulation, builder, colors, row),
+        gauges=_gauges(simulation, row),
     )
 
 
@@ -130,10 +134,13 @@ def _counterclockwise(corners: Floats) -> Floats:
 def _lidars(simulation: Simulation, row: int) -> tuple[Lidar, ...]:
     record, lidars = simulation.scenario.objects[row], []
     own = [(first, count) for owner, first, count in simulation.scans if owner == row]
-    options = [item for item in record.sensors if hasattr(item, "angle_range") and hasattr(item, "range_max")]
+    beams = (item for item in record.sensors if not isinstance(item, GaugeOptions))
+    options = [item for item in beams if hasattr(item, "angle_range") and hasattr(item, "range_max")]
     for number, ((first, count), item) in enumerate(zip(own, options, strict=False)):
         angles = simulation.state.beam_angles[first : first + count]
         chosen: Any = item
+        between = chosen.angle_range / max(count - 1 if chosen.endpoint else count, 1) if count > 1 else 0.0
+        sweeps = getattr(chosen, "realism", None) is not None and chosen.realism.sweep
         lidars.append(
             Lidar(
                 key=f"{record.name}/{number}",
@@ -146,10 +153,24 @@ def _lidars(simulation: Simulation, row: int) -> tuple[Lidar, ...]:
                 range_max=float(chosen.range_max),
                 period=float(chosen.scan_time),
                 noise_std=float(chosen.std) if chosen.noise else 0.0,
-                between=chosen.angle_range / max(count - 1 if chosen.endpoint else count, 1) if count > 1 else 0.0,
+                between=between,
+                beam_time=float(chosen.scan_time) * between / (2 * math.pi) if sweeps else 0.0,
             )
         )
     return tuple(lidars)
+
+
+def _gauges(simulation: Simulation, row: int) -> tuple[Gauge, ...]:
+    counts: dict[str, int] = {}
+    result = []
+    for owner, key, options in mounted_gauges(simulation):
+        if owner != row:
+            continue
+        number = counts[options.name] = counts.get(options.name, -1) + 1
+        mount = _pose(getattr(options, "offset", (0.0, 0.0, 0.0)))
+        settings = options.model_dump(mode="json")
+        result.append(Gauge(key, options.name, number, mount, dict(options.numbers()), settings))
+    return tuple(result)
 
 
 def _grid(simulation: Simulation) -> Grid | None:

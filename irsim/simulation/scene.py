@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart
 from irsim.options.registry import KINEMATICS
 
-__all__ = ["SCENE_VERSION", "Grid", "Lidar", "Look", "SceneDescription", "SceneObject"]
+__all__ = ["SCENE_VERSION", "Gauge", "Grid", "Lidar", "Look", "SceneDescription", "SceneObject"]
 
 SCENE_VERSION = 1
 """Version of the files of scenes and states."""
@@ -30,9 +30,10 @@ class Lidar:
         angle_min, angle_max: Directions of the first and the last beam, frame of the sensor [rad].
         beams: Number of beams.
         range_min, range_max: Shortest and longest range [m].
-        period: Time between two scans [s].
+        period: Duration of a full turn, which is reported as the time of a scan [s].
         noise_std: Standard deviation of the ranges [m]; 0 without noise.
         between: Angle between neighboring beams [rad].
+        beam_time: Time between neighboring beams [s]; 0 if all are measured at once, at the end of a step.
     """
 
     key: str
@@ -46,11 +47,38 @@ class Lidar:
     period: float
     noise_std: float = 0.0
     between: float = 0.0
+    beam_time: float = 0.0
+
+    @property
+    def lag(self) -> float:
+        """Time from the first beam of a scan to the last one [s], which is measured at the end of a step."""
+        return self.beam_time * (self.beams - 1)
 
     @property
     def angles(self) -> Floats:
         """(beams,) directions of the beams, frame of the sensor [rad]."""
         return np.linspace(self.angle_min, self.angle_max, self.beams)
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """A sensor that reports numbers.
+
+    Attributes:
+        key: ``<object>/<sensor>``, the key of its readings.
+        name: Its name in scenarios, such as ``imu``.
+        number: Number among the sensors of this name of its carrier.
+        mount: x, y [m], yaw [rad] on the carrier, body frame.
+        units: Name and unit of each number of a row.
+        settings: Its options, as JSON types.
+    """
+
+    key: str
+    name: str
+    number: int
+    mount: tuple[float, float, float]
+    units: Mapping[str, str]
+    settings: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -93,12 +121,13 @@ class SceneObject:
         wheelbase: [m], of a drive that steers wheels; None for other drives.
         mass: [kg]; infinite for an object that nothing pushes.
         color: Red, green, blue, from 0 to 1.
-        lidars: Its lidars.
+        lidars: Its sensors with beams.
         solid: Whether it collides; false for ``unobstructed`` objects.
         row: Its row in a trace, which counts the map, too.
         static: Whether it never moves.
         threshold: Distance within which it has arrived at a goal [m].
         look: How it is drawn; None for objects of other programs.
+        gauges: Its sensors that report numbers.
     """
 
     index: int
@@ -122,6 +151,7 @@ class SceneObject:
     static: bool = False
     threshold: float = 0.0
     look: Look | None = None
+    gauges: tuple[Gauge, ...] = ()
 
     @property
     def steered(self) -> bool:

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from irsim.msg import LaserScan, ObjectState, Odometry, WorldState
+from tests.bridges.scenes import environment
+from tests.bridges.sensing import SCENE
 from tests.env.driving import Make
 
 YAML = """
@@ -73,3 +75,16 @@ def test_native_odometry_is_copied() -> None:
     assert Odometry.from_msg(copied) == copied
     with pytest.raises(TypeError, match="pose"):
         Odometry.from_msg(3)
+
+
+def test_a_scan_that_takes_time_has_the_time_of_its_first_beam() -> None:
+    env = environment(SCENE)
+    for _ in range(3):
+        env.step()
+    scan = env.get_msg().robots[0].scan
+    assert scan.time_increment == pytest.approx(0.2 * (2 / 4) / (2 * math.pi))
+    assert scan.header.stamp == pytest.approx(0.3 - 4 * scan.time_increment)
+    assert env.get_msg().robots[0].header.stamp == pytest.approx(0.3)
+    env.reset()
+    assert env.get_msg().robots[0].scan.header.stamp == 0
+    env.end(0)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
+from irsim.components.sensors._gauges import GaugeOptions
 from irsim.options.base import Options
 from irsim.options.registry import KINEMATICS, SENSORS
 from irsim.runs.files import RunError, unreadable
@@ -116,7 +117,8 @@ class Lidar:
         if self.beams < 2:
             return 0.0, 0.0, 0.0
         opening = float(self.options["angle_range"])
-        return -opening / 2, opening / 2, opening / (self.beams - 1)
+        between = opening / (self.beams - 1 if self.options.get("endpoint", True) else self.beams)
+        return -opening / 2, -opening / 2 + between * (self.beams - 1), between
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -331,7 +333,7 @@ def _is_chosen(facts: dict[str, Any], word: str) -> bool:
 def _has_beams(options: dict[str, Any]) -> bool:
     """Whether a sensor is one of the core that measures ranges."""
     feature = SENSORS.get(str(options["name"]))
-    return feature is not None and feature.kernel is not None
+    return feature is not None and feature.kernel is not None and not issubclass(feature.options, GaugeOptions)
 
 
 def _object_facts(item: dict[str, Any], radius: float) -> dict[str, Any]:

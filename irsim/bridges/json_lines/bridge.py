@@ -40,6 +40,7 @@ _MAX_NAMES = 100_000
 """Number of objects that one message may name."""
 _NOT_WRITTEN = ("row", "static", "threshold", "look")
 """Fields of objects that files of version 1 do not have."""
+_SAME_TIME_S = 1e-9
 _BY_ROW = ("pose", "twist", "control", "goal", "arrived", "collided", "stopped")
 
 
@@ -53,7 +54,9 @@ def scene_as_json(scene: SceneDescription) -> dict[str, Any]:
         for key in _NOT_WRITTEN:
             del agent[key]
         for lidar in agent["lidars"]:
-            del lidar["between"]
+            del lidar["between"], lidar["beam_time"]
+        if not agent["gauges"]:
+            del agent["gauges"]
     if grid is not None:
         data["grid"] = {"size": list(grid.occupied.shape), "cell": grid.cell, "origin": grid.origin,
                          "runs": _runs(grid.occupied)}  # fmt: skip
@@ -98,7 +101,21 @@ def state_as_json(state: WorldState) -> dict[str, Any]:
     result: dict[str, Any] = {"version": SCENE_VERSION, "step": state.step, "time": state.time}
     result |= {key: getattr(state, key) for key in _BY_ROW}
     result |= {"ranges": dict(state.ranges), "paths": dict(state.paths)}
+    if state.readings:
+        result["readings"] = {key: _reading_as_json(reading) for key, reading in state.readings.items()}
+    old = {key: time for key, time in state.stamps.items() if not abs(time - state.time) < _SAME_TIME_S}
+    if old:
+        result["stamps"] = old
     return _plain(result)  # type: ignore[no-any-return]
+
+
+def _reading_as_json(reading: Any) -> Any:
+    """Numbers by name; of a sensor that reports rows of them, a list of the rows that have any."""
+    names = reading.dtype.names
+    if not reading.shape:
+        return dict(zip(names, reading.tolist(), strict=True))
+    rows = reading[np.isfinite(reading[names[0]])].tolist()
+    return [dict(zip(names, row, strict=True)) for row in rows]
 
 
 def motion_as_json(motion: Motion) -> dict[str, Any]:

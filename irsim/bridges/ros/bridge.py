@@ -76,7 +76,7 @@ class RosBridge(Bridge):
         name = options.node if isinstance(options, RosOptions) else "irsim"
         self.backend = open_backend(options, Node(name, self.topics, self._inbox, messages))
         self._messages = messages
-        self._outgoing = Outgoing(messages, scene, self.topics, options.frame, self._mode)
+        self._outgoing = self._shown(scene)
         if isinstance(options, RosOptions):
             if self._mode == "real":
                 self._real = RealRobots(options, scene.step_time)
@@ -95,7 +95,7 @@ class RosBridge(Bridge):
         if gone := {topic.robot for topic in self.topics if topic.robot is not None} - set(scene.names):
             what = f"the scene does not have the robot '{min(gone)}' any more, which has topics"
             raise BridgeError("bridge-mismatch", what, "connect again")
-        self._outgoing = Outgoing(self._messages, scene, self.topics, self.options.frame, self._mode)
+        self._outgoing = self._shown(scene)
         self._publish_once(start)
 
     def pull(self) -> Feedback | None:
@@ -157,6 +157,9 @@ class RosBridge(Bridge):
             if backend is not None:
                 backend.close()
             self._reports.finish()
+
+    def _shown(self, scene: SceneDescription) -> Outgoing:
+        return Outgoing(self._messages, scene, self.topics, self.options.frame, self._mode)
 
     def _topics(self, scene: SceneDescription, robots: Sequence[SceneObject]) -> tuple[Topic, ...]:
         options = self.options

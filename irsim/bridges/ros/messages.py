@@ -104,13 +104,22 @@ class Messages:
         moved = self._transform(self._vector(x, y, 0.0), self._turned(heading))
         return self._stamped_transform(self.header(stamp, parent), child, moved)
 
-    def odometry(self, stamp: int, frame: str, child: str, pose: Sequence[float], velocity: Sequence[float]) -> Any:
-        """Odometry; the velocity [m/s, m/s, rad/s] is in the frame of the body."""
+    def odometry(
+        self,
+        stamp: int,
+        frame: str,
+        child: str,
+        pose: Sequence[float],
+        velocity: Sequence[float],
+        unsure_pose: Floats | None = None,
+        unsure_twist: Floats | None = None,
+    ) -> Any:
+        """Odometry; the velocity [m/s, m/s, rad/s] is in the frame of the body, and covariances are (36,) or zero."""
         return self._odometry(
             self.header(stamp, frame),
             child,
-            self._sure_pose(self.pose(*pose), self._covariance),
-            self._sure_twist(self.twist(*velocity), self._covariance),
+            self._sure_pose(self.pose(*pose), self._covariance if unsure_pose is None else unsure_pose),
+            self._sure_twist(self.twist(*velocity), self._covariance if unsure_twist is None else unsure_twist),
         )
 
     def scan(
@@ -121,9 +130,15 @@ class Messages:
         limits: tuple[float, float],
         scan_time: float,
         ranges: NDArray[np.float32],
+        beam_time: float = 0.0,
     ) -> Any:
-        """A scan; ranges of beams that hit nothing are infinite (REP 117)."""
-        return self._scan(self.header(stamp, frame), *angles, 0.0, scan_time, *limits, ranges, self._no_intensities)
+        """A scan; ranges of beams that hit nothing are infinite (REP 117).
+
+        The stamp is that of the last beam; the header has the time of the first one, ``beam_time`` [s] is between two.
+        """
+        first = max(0, stamp - round(beam_time * 1e9 * (len(ranges) - 1)))
+        times = beam_time, scan_time
+        return self._scan(self.header(first, frame), *angles, *times, *limits, ranges, self._no_intensities)
 
     def grid(self, stamp: int, frame: str, side: float, origin: tuple[float, float], levels: NDArray[np.int8]) -> Any:
         """An occupancy grid.

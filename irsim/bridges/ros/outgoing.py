@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from irsim.bridges.ros.instruments import Instruments
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import (
     Mode,
@@ -18,13 +19,14 @@ from irsim.bridges.ros.topics import (
     nanoseconds,
     pedestrians,
     ros_names,
+    sensor_frame,
 )
 from irsim.bridges.state import WorldState
 from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart, Circle, Polygon, triangles_of
 from irsim.graphics.scene.bodies import area_of, geometry_of
 from irsim.graphics.scene.scene import Region
-from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
+from irsim.simulation.scene import Gauge, Lidar, SceneDescription, SceneObject
 
 __all__ = ["Outgoing", "body_markers", "body_velocity"]
 
@@ -179,16 +181,24 @@ class Outgoing:
     """
 
     def __init__(
-        self, messages: Messages, scene: SceneDescription, topics: Sequence[Topic], frame: str, mode: Mode
+        self,
+        messages: Messages,
+        scene: SceneDescription,
+        topics: Sequence[Topic],
+        frame: str,
+        mode: Mode,
     ) -> None:
         self.messages, self.scene, self.frame, self.mode = messages, scene, frame, mode
         self._topics = [topic for topic in topics if topic.outgoing]
         self._names = dict(zip(scene.names, ros_names(scene.names), strict=True))
         self._row = {agent.name: agent.index for agent in scene.agents}
         self._lidars = {lidar.key: lidar for agent in scene.agents for lidar in agent.lidars}
+        self._gauges = {gauge.key: gauge for agent in scene.agents for gauge in agent.gauges}
+        self._instruments = Instruments(messages, frame, scene.step_time)
         self._movers = [agent for agent in scene.agents if agent.moves]
         self._paths: dict[str, Floats] = {}
         self._absent: frozenset[str] = frozenset()
+        self._shown: dict[str, float] = {}  # when each sensor measured what was sent last [s]
 
     def frame_of(self, name: str) -> str:
         """Frame of an object."""
@@ -239,10 +249,19 @@ class Outgoing:
             return make.pose_array(stamp, self.frame, state.pose[walkers].tolist())
         if topic.robot in self._absent:
             return None
+        sensor = topic.gauge or (topic.lidar if topic.key == "scan" else None)
+        if sensor is not None:
+            time = state.stamps.get(sensor, state.time)
+            if math.isnan(time) or self._shown.get(sensor) == time:
+                return None
+            self._shown[sensor] = time
+            stamp -= simulated - nanoseconds(time)
         if topic.lidar is not None and topic.key == "scan":
             return self._scan(self._lidars[topic.lidar], topic, state, stamp)
         if topic.robot is None:
             return None
+        if topic.gauge is not None:
+            return self._reading(self._gauges[topic.gauge], topic.robot, state, stamp)
         pose = state.pose[self._row[topic.robot]]
         if topic.key == "reference_path":
             return self._path(topic.robot, state, stamp)
@@ -261,7 +280,15 @@ class Outgoing:
         angles = (lidar.angle_min, lidar.angle_max, spread / (lidar.beams - 1) if lidar.beams > 1 else 0.0)
         frame = laser_frame(self._names[topic.robot], lidar.number)
         limits = (lidar.range_min, lidar.range_max)
-        return self.messages.scan(stamp, frame, angles, limits, lidar.period, np.asarray(ranges, dtype=np.float32))
+        measured = np.asarray(ranges, dtype=np.float32)
+        return self.messages.scan(stamp, frame, angles, limits, lidar.period, measured, lidar.beam_time)
+
+    def _reading(self, gauge: Gauge, robot: str, state: WorldState, stamp: int) -> Any | None:
+        reading = state.readings.get(gauge.key)
+        if reading is None:
+            return None
+        frame = sensor_frame(self._names[robot], gauge.name, gauge.number)
+        return self._instruments.message(gauge, reading, stamp, frame, self.frame_of(robot))
 
     def _path(self, robot: str, state: WorldState, stamp: int) -> Any | None:
         """The path of a robot whenever it is another one than before."""
@@ -280,6 +307,10 @@ class Outgoing:
             for agent in self.scene.agents
             for lidar in agent.lidars
         ]  # fmt: skip
+        for agent in self.scene.agents:
+            name, body = self._names[agent.name], self.frame_of(agent.name)
+            frames = [(sensor_frame(name, one.name, one.number), one.mount) for one in agent.gauges]
+            mounts += [make.transform(stamp, body, frame, mount) for frame, mount in frames]
         return make("tf2_msgs", "TFMessage")(mounts) if mounts else None
 
     def _map(self, stamp: int) -> Any | None:

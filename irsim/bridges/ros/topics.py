@@ -24,8 +24,10 @@ __all__ = [
     "frame_of",
     "laser_frame",
     "nanoseconds",
+    "numbered",
     "ros_names",
     "scene_topics",
+    "sensor_frame",
 ]
 
 _FITS = re.compile(r"[A-Za-z](_?[A-Za-z0-9])*")
@@ -94,16 +96,18 @@ class Row:
         kind: Type of its messages; with ``Twist`` a user may have ``TwistStamped`` instead.
         sim: Whether it goes out or comes in when irsim moves the robots.
         real: Whether it goes out or comes in when the robots are real.
-        per: Whether there is one topic, one for each robot, or one for each lidar.
+        per: Whether there is one topic, one for each robot, one for each lidar, or one for each sensor of a name.
         qos: How it is delivered.
+        sensor: Name of the sensor, for ``per``.
     """
 
     name: str
     kind: str
     sim: Direction
     real: Direction
-    per: Literal["scene", "robot", "lidar"] = "scene"
+    per: Literal["scene", "robot", "lidar", "sensor"] = "scene"
     qos: Qos = STATE
+    sensor: str = ""
 
 
 _STAMPED_POSE = "geometry_msgs/msg/PoseStamped"
@@ -127,6 +131,12 @@ TABLE: Mapping[str, Row] = {
     "cmd_vel": Row("/{robot}/cmd_vel", _TWIST, "in", "out", "robot"),
     "cmd_vel_preview": Row("/{robot}/cmd_vel_preview", _TWIST, "", "out", "robot"),
     "scan": Row("/{robot}/scan{n}", "sensor_msgs/msg/LaserScan", "out", "in", "lidar", SENSOR),
+    "imu": Row("/{robot}/imu{n}", "sensor_msgs/msg/Imu", "out", "", "sensor", SENSOR, "imu"),
+    "wheel_odom": Row("/{robot}/wheel_odom{n}", "nav_msgs/msg/Odometry", "out", "", "sensor", STATE, "odometry"),
+    "gnss": Row("/{robot}/gnss{n}", "sensor_msgs/msg/NavSatFix", "out", "", "sensor", SENSOR, "gnss"),
+    "sonar": Row("/{robot}/sonar{n}", "sensor_msgs/msg/Range", "out", "", "sensor", SENSOR, "sonar"),
+    "ir_range": Row("/{robot}/ir_range{n}", "sensor_msgs/msg/Range", "out", "", "sensor", SENSOR, "ir_range"),
+    "localization": Row("/{robot}/localization{n}", _STAMPED_START, "out", "", "sensor", STATE, "localization"),
 }
 """Key of a topic in options -> its row."""
 
@@ -143,6 +153,7 @@ class Topic:
         qos: How it is delivered.
         robot: Name of the robot whose topic it is, None for one of the scene.
         lidar: Key of the lidar, None for other topics.
+        gauge: Key of the readings of a sensor without beams, None for other topics.
     """
 
     key: str
@@ -152,6 +163,7 @@ class Topic:
     qos: Qos
     robot: str | None = None
     lidar: str | None = None
+    gauge: str | None = None
 
 
 def frame_of(name: str, mode: Mode) -> str:
@@ -161,7 +173,12 @@ def frame_of(name: str, mode: Mode) -> str:
 
 def laser_frame(name: str, number: int) -> str:
     """Frame of a lidar."""
-    return f"{name}/laser{_suffix(number)}"
+    return sensor_frame(name, "laser", number)
+
+
+def sensor_frame(name: str, sensor: str, number: int) -> str:
+    """Frame of a sensor of an object, which is the first one of its name with the number 0."""
+    return f"{name}/{sensor}{numbered(number)}"
 
 
 def scene_topics(
@@ -205,8 +222,12 @@ def scene_topics(
             if row.per == "robot":
                 result.append(replace(base, name=named, robot=robot.name))
                 continue
-            for lidar in robot.lidars:
-                lidar_name = named.replace("{n}", _suffix(lidar.number))
+            for gauge in robot.gauges if row.per == "sensor" else ():
+                if gauge.name == row.sensor:
+                    gauge_name = named.replace("{n}", numbered(gauge.number))
+                    result.append(replace(base, name=gauge_name, robot=robot.name, gauge=gauge.key))
+            for lidar in robot.lidars if row.per == "lidar" else ():
+                lidar_name = named.replace("{n}", numbered(lidar.number))
                 result.append(replace(base, name=lidar_name, robot=robot.name, lidar=lidar.key))
     _check_unique(result)
     return tuple(result)
@@ -217,7 +238,8 @@ def pedestrians(scene: SceneDescription) -> list[SceneObject]:
     return [agent for agent in scene.agents if agent.role == "obstacle" and agent.moves]
 
 
-def _suffix(number: int) -> str:
+def numbered(number: int) -> str:
+    """How the name of a topic or frame ends for the first, second, … sensor."""
     return f"_{number}" if number else ""
 
 

@@ -27,6 +27,7 @@ __all__ = ["TOPIC_KEYS", "TOPIC_NAME", "QosOptions", "RosOptions", "ShownOptions
 TOPIC_KEYS = (
     "clock", "tf", "tf_static", "map", "markers", "pedestrians", "pedestrian_ids", "goal_pose", "initialpose", "odom",
     "pose", "reference_path", "robot_goal_pose", "robot_initialpose", "cmd_vel", "cmd_vel_preview", "scan",
+    "imu", "wheel_odom", "gnss", "sonar", "ir_range", "localization",
 )  # fmt: skip
 """Keys of the table of topics."""
 TOPIC_NAME = re.compile(r"(/[A-Za-z_~{][A-Za-z0-9_{}]*)+")
@@ -60,7 +61,7 @@ class ShownOptions(BridgeOptions):
     """Names of the robots that have topics; empty for all robots."""
     topics: dict[str, str | None] = {}
     """Other names of topics, by their key in the table of topics: `{robot}` is the name of the robot, `{n}` is empty
-    for its first lidar and `_1` for the second one, null omits a topic. Example: `{cmd_vel: /cmd_vel, tf: null}`."""
+    for its first sensor and `_1` for the second one, null omits a topic. Example: `{cmd_vel: /cmd_vel, tf: null}`."""
     qos: dict[str, QosOptions] = {}
     """Other qualities of service of topics, by their key in the table of topics."""
     frame: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_/]*$")] = "map"

@@ -16,7 +16,8 @@ class Ros2(RosOptions):
     """Take part in ROS 2: RViz, Nav2 and robots see the scene, and send commands and goals; or drive real robots.
 
     Keys of its topics are clock, tf, tf_static, map, markers, pedestrians, pedestrian_ids, odom, pose, reference_path
-    and scan, which go out, and cmd_vel, goal_pose, initialpose, robot_goal_pose and robot_initialpose, which come in;
+    and scan, and imu, wheel_odom, gnss, sonar, ir_range and localization of robots with such sensors, which go out, and
+    cmd_vel, goal_pose, initialpose, robot_goal_pose and robot_initialpose, which come in;
     with `mode: real` odom and scan come in, and cmd_vel or cmd_vel_preview goes out.
     """
 

@@ -4,16 +4,28 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 import irsim._core as core
 from irsim.components.sensors._gauges import GaugeOptions
+from irsim.options.base import problem
 from irsim.options.registry import SENSORS
 from irsim.options.units import Bool, Meters, Number, Seconds
-from irsim.options.vectors import Offset
+from irsim.options.vectors import Component, Offset, vector
 
 Error = Annotated[Meters, Field(ge=0)]
 Names = Annotated[list[str], Field(max_length=100)]
+
+
+def _is_on_earth(origin: list[float]) -> list[float]:
+    if abs(origin[0]) > 90 or abs(origin[1]) > 180:
+        raise problem(
+            "out-of-range",
+            f"latitude {origin[0]:g} and longitude {origin[1]:g} are no place on the earth",
+            allowed="latitudes from -90 to 90, longitudes from -180 to 180",
+            fix="origin: [48.1, 11.6, 520]",
+        )
+    return origin
 
 
 class Gnss(GaugeOptions):
@@ -53,6 +65,8 @@ class Gnss(GaugeOptions):
     """Names of regions in which reflections from walls make the errors larger."""
     reflection: Annotated[Number, Field(ge=1, le=100)] = 3.0
     """How many times larger they are there."""
+    origin: Annotated[list[Component], vector(("deg", "deg", "m"), 3), AfterValidator(_is_on_earth)] = [0.0, 0.0, 0.0]
+    """Latitude, longitude and height of the origin of the world, for messages of ROS."""
 
 
 SENSORS.register(Gnss, kernel=core.GnssOptions)

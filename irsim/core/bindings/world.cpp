@@ -10,6 +10,12 @@ void bind_world(nb::module_& m) {
   bind_fields<RouteOptions>(m, "RouteOptions");
   bind_fields<Actuation>(m, "Actuation");
   bind_fields<SensorTiming>(m, "SensorTiming");
+  m.def(
+      "shown_step",
+      [](const SensorTiming& timing, double step_time, std::int64_t step) {
+        return timetable_of(timing, step_time).shown(step);
+      },
+      nb::arg("timing"), nb::arg("step_time"), nb::arg("step"));
   bind_fields<ObjectSpec>(m, "ObjectSpec");
   bind_fields<RandomPlacement>(m, "RandomPlacement");
   bind_fields<CircleCrossing>(m, "CircleCrossing");

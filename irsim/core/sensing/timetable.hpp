@@ -46,6 +46,12 @@ struct Timetable {
     while (steps < step && !due(step - steps)) ++steps;
     return steps;
   }
+  /// The step in which the data were measured that a sensor shows after a step; -1 if there are none yet.
+  std::int64_t shown(std::int64_t step) const {
+    std::int64_t measured = step - delay;
+    while (measured >= 0 && !due(measured)) --measured;
+    return measured;
+  }
   /// Whether data arrive in a step.
   bool arrives(std::int64_t step) const { return step >= delay && due(step - delay); }
   /// The slot of the last measurement until the end of a step.

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import json
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+import irsim._core as core
 from irsim.bridges.export.episode import Block, ExportedEpisode
+from irsim.bridges.ros.instruments import Instruments
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.outgoing import body_markers
-from irsim.bridges.ros.topics import nanoseconds, ros_names
+from irsim.bridges.ros.topics import TABLE, nanoseconds, numbered, ros_names, sensor_frame
 from irsim.common.arrays import Floats
 from irsim.objects.describe import describe_scene
 from irsim.runs.resimulation import initial_scene
 from irsim.simulation.events import BETWEEN_STEPS, Event
-from irsim.simulation.scene import SceneDescription
+from irsim.simulation.scene import Gauge, SceneDescription
 from irsim.simulation.trace import Trace
 
 __all__ = ["Bag", "occupancy_grid", "write_run"]
@@ -71,6 +73,8 @@ class _Writer:
 
     def __init__(self, episode: ExportedEpisode, bag: Bag, messages: Messages) -> None:
         self.episode, self.bag, self.messages = episode, bag, messages
+        with initial_scene(episode.run, episode.limits) as env:
+            self.scene = describe_scene(env.simulation)
         self.events = deque(episode.run.events)
         names = ros_names(actor.name for actor in episode.actors)
         self.frames = [f"{name}/base_link" for name in names]
@@ -88,27 +92,44 @@ class _Writer:
         self.goals = self._robot_topics(names, "goal", "geometry_msgs/msg/PoseStamped")
         mounted = [(names[lidar.actor], f"_{lidar.number}" if lidar.number else "") for lidar in episode.lidars]
         self.laser_frames = [f"{owner}/laser{end}" for owner, end in mounted]
+        self.instruments = Instruments(messages, _WORLD, self.scene.step_time)
+        self.measured = dict[str, int]()  # step in which each sensor measured what was added last
+        self.gauges = self._gauges(names)
         self.scans = [bag.topic(f"/{owner}/scan{end}", "sensor_msgs/msg/LaserScan") for owner, end in mounted]
+
+    def _gauges(self, names: Sequence[str]) -> list[tuple[int, Gauge, str, Topic]]:
+        """Actor, sensor, frame and topic of each sensor that a message is for."""
+        gauges, rows = [], [row for row in TABLE.values() if row.per == "sensor"]
+        for number, (name, actor) in enumerate(zip(names, self.episode.actors, strict=True)):
+            for gauge in self.scene.objects[actor.index].gauges:
+                for row in rows:
+                    if row.sensor == gauge.name:
+                        called = row.name.replace("{robot}", name).replace("{n}", numbered(gauge.number))
+                        frame = sensor_frame(name, gauge.name, gauge.number)
+                        gauges.append((number, gauge, frame, self.bag.topic(called, row.kind)))
+        return gauges
 
     def _robot_topics(self, names: Sequence[str], topic: str, kind: str) -> list[Topic | None]:
         pairs = zip(names, self.episode.actors, strict=True)
         return [self.bag.topic(f"/{name}/{topic}", kind) if actor.role == "robot" else None for name, actor in pairs]
 
     def add_scene(self) -> bool:
-        """Keep the bodies and add the map; whether the map, if there is one, could be added."""
-        bag, episode = self.bag, self.episode
-        with initial_scene(episode.run, episode.limits) as env:
-            self.scene = scene = describe_scene(env.simulation)
+        """Add the map; whether the map, if there is one, could be added."""
+        bag, scene = self.bag, self.scene
         grid = occupancy_grid(self.messages, scene, _WORLD)
         if grid is not None:
             bag.add(bag.topic("/map", "nav_msgs/msg/OccupancyGrid", latched=True), 0, grid)
         return grid is not None or scene.grid is None
 
     def add_mounts(self) -> None:
-        """Add where the lidars are on their robots."""
+        """Add where the sensors are on their robots."""
         mounts = [
             self.messages.transform(0, self.frames[lidar.actor], frame, [float(v) for v in lidar.options["offset"]])
             for lidar, frame in zip(self.episode.lidars, self.laser_frames, strict=True)
+        ]
+        mounts += [
+            self.messages.transform(0, self.frames[number], frame, gauge.mount)
+            for number, gauge, frame, _ in self.gauges
         ]
         if mounts:
             topic = self.bag.topic("/tf_static", "tf2_msgs/msg/TFMessage", latched=True)
@@ -141,6 +162,7 @@ class _Writer:
             for number in np.flatnonzero(changed[row]).tolist():
                 self._add_goal(self.goals[number], stamp, trace.goal[row, number].tolist())
             self._add_scans(trace, row, stamp, absent)
+            self._add_readings(trace, row, stamp, absent)
             while self.events and self.events[0].step <= step:
                 bag.add(self.log, stamp, _log(messages, stamp, self.events.popleft()))
 
@@ -159,10 +181,32 @@ class _Writer:
         """Add the scans of one step, as far as scans were recorded and their robots are there."""
         for lidar, topic, frame in zip(self.episode.lidars, self.scans, self.laser_frames, strict=True):
             ranges = trace.ranges[lidar.key]
-            if row < len(ranges) and lidar.actor not in absent:
+            measured = self._measured(lidar.key, lidar.options, int(trace.step[row]))
+            if row < len(ranges) and lidar.actor not in absent and measured is not None:
                 duration = float(lidar.options["scan_time"])
-                scan = self.messages.scan(stamp, frame, lidar.angles, lidar.limits, duration, ranges[row])
+                mounted = self.scene.objects[self.episode.actors[lidar.actor].index].lidars[lidar.number]
+                shape = lidar.angles, lidar.limits, duration
+                scan = self.messages.scan(measured, frame, *shape, ranges[row], mounted.beam_time)
                 self.bag.add(topic, stamp, scan)
+
+    def _add_readings(self, trace: Trace, row: int, stamp: int, absent: frozenset[int]) -> None:
+        """Add what other sensors report in one step."""
+        for number, gauge, frame, topic in self.gauges:
+            readings = trace.readings.get(gauge.key, ())
+            measured = self._measured(gauge.key, gauge.settings, int(trace.step[row]))
+            if row < len(readings) and number not in absent and measured is not None:
+                message = self.instruments.message(gauge, readings[row], measured, frame, self.frames[number])
+                self.bag.add(topic, stamp, message)
+
+    def _measured(self, key: str, options: Mapping[str, Any], step: int) -> int | None:
+        """When a sensor measured what it shows after a step [ns]; None before the first data, and for old ones."""
+        step_time = self.scene.step_time
+        timing = core.SensorTiming(rate=options.get("rate") or 0.0, latency=options.get("latency") or 0.0)
+        shown = core.shown_step(timing, step_time, step)
+        if shown < 0 or self.measured.get(key) == shown:
+            return None
+        self.measured[key] = shown
+        return nanoseconds(shown * step_time)
 
     def _add_goal(self, topic: Topic | None, stamp: int, goal: list[float]) -> None:
         """Add a goal, if the object is a robot and has one."""

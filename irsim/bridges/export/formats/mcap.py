@@ -4,12 +4,16 @@ All stamps are simulated time, the fixed frame is ``world``, and the topics are:
 
 - ``/clock``, and ``/tf`` from ``world`` to ``<name>/base_link`` of each object that moves, in every step
 - ``/<robot>/odom`` (the true pose, without drift and with zero covariance; twist in the body frame),
-  ``/<robot>/scan``, ``/<robot>/scan_1``, … in every step; the range of a beam that hit nothing is infinite
+  ``/<robot>/scan``, ``/<robot>/scan_1``, … in every step; the range of a beam that hit nothing is infinite,
+  and a scan with ``sweep`` has the stamp of its first beam
+- what sensors without beams report, in every step: ``/<robot>/imu`` (accelerations with gravity; its orientation is not
+  known), ``/<robot>/wheel_odom`` (``odometry``, in coordinates of ``world``), ``/<robot>/gnss`` (from
+  ``origin``), ``/<robot>/sonar``, ``/<robot>/ir_range`` and ``/<robot>/localization``; ``_1`` for a second one
 - ``/<robot>/goal`` whenever it changes, and ``/obstacles``, a PoseArray of the moving obstacles, in every step
 - ``/rosout`` with the events
 - latched, whenever objects come or go: ``/markers`` with all bodies that are there, in place of those before, and
   ``/obstacles/ids`` with the names of the poses of ``/obstacles`` as a JSON list
-- once, for those who subscribe later as well: ``/tf_static`` with the mounts of the lidars, and ``/map``
+- once, for those who subscribe later as well: ``/tf_static`` with the mounts of the sensors, and ``/map``
 
 Who is not in the world at a time is in no message of that time.
 
