@@ -239,10 +239,13 @@ def shunting_message(simulation: Simulation, robots: Sequence[RobotResult], park
         steps = int(simulation.count[0]) if arrived is None else round(arrived / step_time)
         track = np.vstack([state.initial_state(row)[None, :2], state.trajectory(row)[:, :2]])[: steps + 1]
         away = np.hypot(*(track - goals[0][:2]).T)
-        near = np.flatnonzero(away < _NEAR)
+        since, targets, _ = state.standings(row)
+        renewed = np.flatnonzero((targets[1:, :2] != targets[:-1, :2]).any(axis=1))
+        last_leg = int(since[renewed[-1] + 1]) if renewed.size else 0  # a tour may pass its last goal before
+        near = np.flatnonzero(away[last_leg:] < _NEAR)
         if not near.size:
             continue
-        first = int(near[0])
+        first = last_leg + int(near[0])
         lengths = np.hypot(*np.diff(track, axis=0).T)
         driven, moved = float(lengths.sum()), float(lengths[first:].sum())
         time = (len(track) - 1 - first) * step_time

@@ -98,8 +98,7 @@ def _placed(record: ObjectRecord, pose: list[float], goal: Sequence[float] | Non
     state = [*pose, *record.state[3:]]
     if goal is None and record.static:
         return replace(record, state=state)
-    rest: dict[str, Any] = {"sensors": [], "wander": False, "loop": False, "appear_time": 0.0, "start_time": 0.0}
-    rest["spreads"] = None
+    rest: dict[str, Any] = {"wander": False, "loop": False, "appear_time": 0.0, "start_time": 0.0, "spreads": None}
     if goal is None:
-        return replace(record, state=state, behavior=None, group_behavior=None, unobstructed=True, **rest)
-    return replace(record, state=state, goals=[[float(value) for value in goal]], **rest)
+        return record.with_sensors([], state=state, behavior=None, group_behavior=None, unobstructed=True, **rest)
+    return record.with_sensors([], state=state, goals=[[float(value) for value in goal]], **rest)

@@ -48,7 +48,7 @@ def scene_table(scenario: ResolvedScenario, seed: int | None = None, driven: str
     count = max(2, min(SEEDS, _MAX_OBJECTS // max(1, len(scenario.objects)))) if placed else 0
     seeds = [own or 0, *range(count)]
     bare = [
-        replace(record, sensors=[], behavior=None, group_behavior=None, appear_time=0.0) for record in scenario.objects
+        record.with_sensors([], behavior=None, group_behavior=None, appear_time=0.0) for record in scenario.objects
     ]
     world = scenario.world.model_copy(update={"fog_map": False, "collision_mode": "unobstructed"})
     built = build_world(replace(scenario, objects=bare, world=world), len(seeds))
@@ -245,7 +245,7 @@ def lidar_hits(scenario: ResolvedScenario, seed: int) -> list[LidarHits]:
     """
     carriers = [k for k, record in enumerate(scenario.objects) if _lidars(record.sensors)][:MAX_LIDARS]
     records = [
-        replace(record, sensors=_lidars(record.sensors) if k in carriers else [], behavior=None, group_behavior=None)
+        record.with_sensors(_lidars(record.sensors) if k in carriers else [], behavior=None, group_behavior=None)
         for k, record in enumerate(scenario.objects)
     ]
     if not carriers or sum(sensor.number for record in records for sensor in _lidars(record.sensors)) > _MAX_BEAMS:

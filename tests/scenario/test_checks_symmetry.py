@@ -143,6 +143,14 @@ def test_the_summary_says_how_long_a_car_shunted_at_its_goal() -> None:
     assert "to and fro" not in irsim.run(text=car(0.3, True), seed=0).summary
 
 
+def test_a_tour_past_its_last_goal_is_no_shunting() -> None:
+    tour = car(0.3, True).replace("goal: [52.3, 17.4]", "waypoints: [[25, 16], [18, 24], [10.5, 10.5]]")
+    result = irsim.run(text=tour.replace("threshold: 0.3", "threshold: 1"), seed=0)
+    assert result.outcome == "success"
+    assert result.sim_time > 8
+    assert "to and fro" not in result.summary
+
+
 @pytest.mark.parametrize("count", [3, 4, 5])
 @pytest.mark.parametrize("behavior", ["name: orca", "name: rvo", "name: sfm"])
 def test_a_ring_whose_ties_are_left_is_reported_once(behavior: str, count: int) -> None:

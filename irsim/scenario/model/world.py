@@ -190,8 +190,8 @@ class WorldModel(Options):
     mdownsample: Annotated[int, Field(strict=True, ge=1, le=10_000), OrNull(1)] = 1
     """Merge blocks of N x N cells of the grid; a block is occupied if one of its cells is."""
     zones: Annotated[list[Zone], Field(max_length=1000), OrNull([])] = []
-    """Named lines and areas that are watched: who crosses, enters and leaves them, and when. Without effect on
-    motion and sensors."""
+    """Named lines and areas that are watched: who crosses, enters and leaves them, and when. An area may also have
+    slippery ground (`slip`, `grip`, `surface`)."""
     fog_map: Annotated[Bool, OrNull(False)] = False
     """Cover the world with fog that lidars and fields of view of robots clear, up to the first thing that blocks them;
     the first scan clears it when the run begins."""

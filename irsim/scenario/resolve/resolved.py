@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from irsim.common.text import quoted
@@ -170,6 +170,15 @@ class ObjectRecord:
     def moves_from(self) -> float:
         """Time from which it may move [s]."""
         return max(self.start_time, self.appear_time)
+
+    def with_sensors(self, sensors: list[BaseModel], **changes: Any) -> ObjectRecord:
+        """A copy with other sensors that decides from the truth, as it may lack what its estimate or its tracks need.
+
+        Args:
+            sensors: The sensors of the copy.
+            **changes: Other fields of the copy.
+        """
+        return replace(self, sensors=sensors, perceives="truth", **changes)
 
     def heading_counts(self, goal: Sequence[float]) -> bool:
         """Whether it arrives at a goal (2 or 3 numbers; NaN: any heading) only with the heading of the goal."""

@@ -301,9 +301,9 @@ def _try_alone(
     for row, record in enumerate(context.resolved.objects):
         if record.id == mover.record.id:
             mine, goals = row, scene.goals[record.id][: index + 1]
-            records.append(replace(record, behavior=behavior, goals=goals, sensors=[], wander=False, loop=False))
+            records.append(record.with_sensors([], behavior=behavior, goals=goals, wander=False, loop=False))
         elif not record.static:
-            records.append(replace(record, sensors=[], behavior=None, group_behavior=None, unobstructed=True))
+            records.append(record.with_sensors([], behavior=None, group_behavior=None, unobstructed=True))
         else:
             records.append(record)
     world = context.resolved.world.model_copy(update={"fog_map": False})

@@ -159,7 +159,7 @@ def _fixed_scene(context: Context) -> StartState:
 def _build_worlds(context: Context, seeds: list[int]) -> tuple[core.World, core.State]:
     """One world per seed, placed by the core, whose objects have no behavior and no sensors."""
     bare = [
-        replace(record, sensors=[], behavior=None, group_behavior=None, appear_time=0.0)
+        record.with_sensors([], behavior=None, group_behavior=None, appear_time=0.0)
         if record.sensors or record.kinematics or record.appear_time
         else record
         for record in context.resolved.objects
