@@ -112,6 +112,7 @@ class DiffDynamicOptions(_Options):
         gear: float,
         response: float,
         friction: float,
+        slip_stiffness: float,
     ) -> None: ...
 
 # behaviors (core/behaviors/)

@@ -47,9 +47,7 @@ def scene_table(scenario: ResolvedScenario, seed: int | None = None, driven: str
     placed = bool(scenario.placements)
     count = max(2, min(SEEDS, _MAX_OBJECTS // max(1, len(scenario.objects)))) if placed else 0
     seeds = [own or 0, *range(count)]
-    bare = [
-        record.with_sensors([], behavior=None, group_behavior=None, appear_time=0.0) for record in scenario.objects
-    ]
+    bare = [record.with_sensors([], behavior=None, group_behavior=None, appear_time=0.0) for record in scenario.objects]
     world = scenario.world.model_copy(update={"fog_map": False, "collision_mode": "unobstructed"})
     built = build_world(replace(scenario, objects=bare, world=world), len(seeds))
     state = core.State(built, np.array(seeds, dtype=np.uint64), False)

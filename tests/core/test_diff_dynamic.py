@@ -18,7 +18,9 @@ USUAL = DiffDynamic()
 
 def base(**options: Any) -> core.DiffDynamicOptions:
     values = {name: getattr(USUAL, name) for name in core.DiffDynamicOptions.fields}
-    return core.DiffDynamicOptions(**{**values, "alpha": [0.03, 0.0, 0.0, 0.03], "friction": math.inf, **options})
+    return core.DiffDynamicOptions(
+        **{**values, "alpha": [0.03, 0.0, 0.0, 0.03], "friction": math.inf, "slip_stiffness": math.inf, **options}
+    )
 
 
 def speeds(path: np.ndarray) -> np.ndarray:

@@ -186,6 +186,17 @@ def test_less_grip_brakes_a_robot_with_motors_over_a_longer_way(make: Make) -> N
     assert env.robot_list[0].state[0, 0] - start == pytest.approx(speed**2 / (2 * 0.8 * 0.25 * 9.81), rel=0.02)
 
 
+def test_wheels_that_pull_hard_turn_faster_than_the_body_drives(make: Make) -> None:
+    drive_of = "name: diff_dynamic, torque_max: 1.0, voltage: null, drag: 0.0, friction: 0.5, slip_stiffness: 10.0"
+    env = make(scene(drive_of, "", "acce: [.inf, .inf]"))
+    there, believed = drive(env, [9.0, 0.0], steps=20)
+    force, borne = 1.0 / 0.08, 0.5 * 10.0 / 2 * 9.81  # of each wheel [N]
+    assert there[0] == pytest.approx(0.5 * 2 * force / 10.0 * 1.0**2, rel=1e-6)
+    assert believed[0] == pytest.approx(there[0] / (1 - math.atanh(force / borne) / 10.0), rel=1e-6)
+    end, after = drive(env, [0.0, 0.0], steps=10)
+    assert after[0] - believed[0] < 0.97 * (end[0] - there[0]), "and wheels that brake turn slower"
+
+
 def test_a_car_on_ice_cannot_turn_faster_than_its_tyres_hold(make: Make) -> None:
     sideways = []  # acceleration to the side [m/s^2]
     for grip in (1.0, 0.15):

@@ -64,6 +64,9 @@ class DiffDynamic(KinematicsOptions):
     friction: Positive | None = None
     """Coefficient of friction of the wheels: it limits the force of each to this share of half the weight, which
     `grip` of a zone changes. Null sets no limit; in a zone the coefficient is then `grip` itself."""
+    slip_stiffness: Positive | None = None
+    """Slope k of the force of a wheel over its slip: force = friction · load · tanh(k · slip). Wheels that pull turn
+    faster than they roll, and wheels that brake slower, which odometry reports. Null lets no wheel slip under force."""
 
 
 KINEMATICS.register(DiffDynamic, kernel=core.DiffDynamicOptions)

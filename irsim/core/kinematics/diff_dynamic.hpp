@@ -23,15 +23,16 @@ struct DiffDynamicOptions {
   double gear;             // turns of the motor per turn of the wheel
   double response;         // time constant of the controller of speeds [s]
   double friction;         // coefficient of the wheels, may be infinite: they hold every force
+  double slip_stiffness;   // force = friction * load * tanh(stiffness * slip), may be infinite: no slip under force
   template <class Visit>
   static constexpr auto fields(const Visit& visit) {
     using O = DiffDynamicOptions;
-    return visit(field("noise", &O::noise), field("alpha", &O::alpha), field("mass", &O::mass),
-                 field("inertia", &O::inertia), field("wheel_radius", &O::wheel_radius), field("track", &O::track),
-                 field("drag", &O::drag), field("turn_drag", &O::turn_drag), field("torque_max", &O::torque_max),
-                 field("voltage", &O::voltage), field("resistance", &O::resistance),
-                 field("torque_constant", &O::torque_constant), field("gear", &O::gear),
-                 field("response", &O::response), field("friction", &O::friction));
+    return visit(
+        field("noise", &O::noise), field("alpha", &O::alpha), field("mass", &O::mass), field("inertia", &O::inertia),
+        field("wheel_radius", &O::wheel_radius), field("track", &O::track), field("drag", &O::drag),
+        field("turn_drag", &O::turn_drag), field("torque_max", &O::torque_max), field("voltage", &O::voltage),
+        field("resistance", &O::resistance), field("torque_constant", &O::torque_constant), field("gear", &O::gear),
+        field("response", &O::response), field("friction", &O::friction), field("slip_stiffness", &O::slip_stiffness));
   }
 
   /// The largest torque of a wheel that the ground bears [N m]. Without a coefficient of the wheels, the grip is one.
@@ -50,18 +51,36 @@ struct DiffDynamicOptions {
   }
 };
 
-/// Changes of forward speed and yaw rate [m/s^2], [rad/s^2]: mass * v' = sum of torques / radius - drag * v, and the
-/// same of the turn. The controller asks for the torques with which both would come to their wanted values
-/// exponentially.
-inline Vec2 acceleration(const DiffDynamicOptions& o, Vec2 speeds, Vec3 control, const std::array<double, 2>& most) {
+/// Torques of the left and the right wheel [N m], with which the controller would bring both speeds to their wanted
+/// values exponentially.
+///
+/// Args:
+///   most: The largest of each.
+inline std::array<double, 2> torques(const DiffDynamicOptions& o, Vec2 speeds, Vec3 control,
+                                     const std::array<double, 2>& most) {
   const double v = speeds.x, w = speeds.y, half = 0.5 * o.track;
   const double force = o.mass * (control[0] - v) / o.response + o.drag * v;
   const double moment = o.inertia * (control[1] - w) / o.response + o.turn_drag * w;
   const double both = 0.5 * force * o.wheel_radius, apart = 0.5 * moment * o.wheel_radius / half;
-  const double left = o.possible(both - apart, (v - half * w) / o.wheel_radius, most[0]);
-  const double right = o.possible(both + apart, (v + half * w) / o.wheel_radius, most[1]);
-  return {((left + right) / o.wheel_radius - o.drag * v) / o.mass,
-          ((right - left) * half / o.wheel_radius - o.turn_drag * w) / o.inertia};
+  return {{o.possible(both - apart, (v - half * w) / o.wheel_radius, most[0]),
+           o.possible(both + apart, (v + half * w) / o.wheel_radius, most[1])}};
+}
+
+/// Changes of forward speed and yaw rate [m/s^2], [rad/s^2]: mass * v' = sum of torques / radius - drag * v, and the
+/// same of the turn.
+inline Vec2 acceleration(const DiffDynamicOptions& o, Vec2 speeds, Vec3 control, const std::array<double, 2>& most) {
+  const auto [left, right] = torques(o, speeds, control, most);
+  return {((left + right) / o.wheel_radius - o.drag * speeds.x) / o.mass,
+          ((right - left) * 0.5 * o.track / o.wheel_radius - o.turn_drag * speeds.y) / o.inertia};
+}
+
+/// The speed at which a wheel turns that drives or brakes with a torque: faster or slower than it rolls, by the slip
+/// at which the ground bears this torque.
+inline double turning(const DiffDynamicOptions& o, double rolling, double torque, double borne) {
+  constexpr double kSpinning = 0.95;  // largest slip
+  if (!std::isfinite(o.slip_stiffness) || !std::isfinite(borne)) return rolling;
+  const double slip = std::min(kSpinning, std::atanh(std::min(1.0, std::fabs(torque) / borne)) / o.slip_stiffness);
+  return torque * rolling > 0.0 ? rolling / (1.0 - slip) : rolling * (1.0 - slip);
 }
 
 /// Wheels roll without slip, except where zones say otherwise. The motion is integrated in parts by the classical
@@ -84,8 +103,8 @@ inline void diff_dynamic(const DiffDynamicOptions& o, const Motion& m) {
   const int parts = static_cast<int>(clip(std::ceil(m.dt * std::max(1.0 / kLargest, fast) - 1e-9), 1.0, kMostParts));
   const double dt = m.dt / parts;
   const Pose before = m.pose;
-  const std::array<double, 2> most = {
-      {std::min(o.torque_max, o.borne(m.footing, 0)), std::min(o.torque_max, o.borne(m.footing, 1))}};
+  const std::array<double, 2> borne = {{o.borne(m.footing, 0), o.borne(m.footing, 1)}};
+  const std::array<double, 2> most = {{std::min(o.torque_max, borne[0]), std::min(o.torque_max, borne[1])}};
   double turned = 0.0;
   Vec2 way;
   for (int k = 0; k < parts; ++k) {
@@ -104,7 +123,11 @@ inline void diff_dynamic(const DiffDynamicOptions& o, const Motion& m) {
                     (dt / 6.0);
     turned += turn;
     const Vec2 wheels = (speeds + middle * 4.0 + next) * (1.0 / 6.0), body = over_ground(wheels, half, m.footing);
-    add_unmoved(m, {wheels.x, 0.0}, wheels.y, {body.x, 0.0}, body.y, dt);
+    const auto pull = torques(o, middle, m.control, most);
+    const double turning_left = turning(o, wheels.x - half * wheels.y, pull[0], borne[0]);
+    const double turning_right = turning(o, wheels.x + half * wheels.y, pull[1], borne[1]);
+    add_unmoved(m, {0.5 * (turning_left + turning_right), 0.0}, 0.5 * (turning_right - turning_left) / half,
+                {body.x, 0.0}, body.y, dt);
     speeds = next;
   }
   const Vec2 moved = rotate(way, m.direction);
@@ -118,7 +141,7 @@ inline std::array<Vec2, 2> wheels(const DiffDynamicOptions& o) {
   return {{{0.0, 0.5 * o.track}, {0.0, -0.5 * o.track}}};
 }
 
-inline Rows rows(const DiffDynamicOptions&) { return {1, 1, 2, true}; }
+inline Rows rows(const DiffDynamicOptions& o) { return {1, 1, 2, true, std::isfinite(o.slip_stiffness)}; }
 
 inline Vec3 deviation(const DiffDynamicOptions& o, Vec3 control) { return velocity_deviation(o.alpha, control); }
 

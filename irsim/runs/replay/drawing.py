@@ -98,7 +98,7 @@ def page_zones(zones: Sequence[Zone]) -> list[dict[str, Any]]:
         shape = {"line" if zone.is_line else "rings": _flat(zone.points) if zone.is_line else [_flat(zone.points)]}
         if zone.circle is not None:
             shape = {"circle": [_rounded(value) for value in (*zone.circle.center, zone.circle.radius)]}
-        drawn.append({"name": clean(zone.name), "colors": colors, "at": [_rounded(left), _rounded(top)], **shape})
+        drawn.append({"name": clean(zone.title), "colors": colors, "at": [_rounded(left), _rounded(top)], **shape})
     return drawn
 
 
