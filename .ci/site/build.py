@@ -22,7 +22,7 @@ from gallery import gallery_pages
 from head import lighter
 from language import language_pages, whereabouts
 from mirror import FOLDERS, GUIDES, LISTED, files_of, mirrored, rewritten
-from pages import ROOT, Page, contents, link, once, summary_of
+from pages import ROOT, Page, contents, headed, link, once, summary_of
 from python_api import python_pages
 from redirects import STUB, write_stubs
 from suites import suite_pages
@@ -208,7 +208,9 @@ def _finish(html: Path, pages: list[Page]) -> None:
             continue
         name = path.relative_to(html).with_suffix("").as_posix()
         text = lighter(path.read_text(encoding="utf-8"), searches=name == "search", about=about.get(name, ""))
-        text = with_films(text, path).replace("<summary><span", '<summary aria-label="Pages below this one"><span')
+        text = with_films(headed(text), path).replace(
+            "<summary><span", '<summary aria-label="Pages below this one"><span'
+        )
         if "://" not in listed:
             text = text.replace(f"'{listed}'", f"'{os.path.relpath(html / listed, path.parent)}'")
         path.write_text(text, encoding="utf-8")

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-__all__ = ["ROOT", "Page", "anchor", "cell", "contents", "href", "link", "once", "plain", "summary_of"]
+__all__ = ["ROOT", "Page", "anchor", "cell", "contents", "headed", "href", "link", "once", "plain", "summary_of"]
 
 ROOT = Path(__file__).resolve().parents[2]
 """The checkout."""
@@ -53,6 +53,17 @@ def link(text: str, start: str, target: str) -> str:
 def anchor(name: str) -> str:
     """A place that links lead to."""
     return f'<span id="{escape(name)}"></span>'
+
+
+def headed(html: str) -> str:
+    """A page whose anchors below headings are the headings themselves, so that links show these, too."""
+    form = r'<(h[1-6])>((?:(?!</?h[1-6]>).)*?</\1>)\s*<p><span id="([^"]*)"></span>(</p>)?'
+    return re.sub(form, _with_id, html, flags=re.DOTALL)
+
+
+def _with_id(found: re.Match[str]) -> str:
+    kind, rest, name, alone = found.groups()
+    return f'<{kind} id="{name}">{rest}' + ("" if alone else "\n<p>")
 
 
 def plain(text: str) -> str:

@@ -16,7 +16,7 @@ context.window = context;
 for (const name of ["_static/language_data.js", "_static/searchtools.js", "searchindex.js"]) {
   vm.runInContext(readFileSync(join(html, name), "utf8"), context, { filename: name });
 }
-vm.runInContext("rankByRarity(Search); beginWithNames(Search);", context);
+vm.runInContext("improve(Search);", context);
 const questions = JSON.parse(readFileSync(0, "utf8"));
 context.questions = questions;
 const found = vm.runInContext(

@@ -101,3 +101,35 @@ def test_the_search_page_answers(chromium: Any, address: str) -> None:
     firsts = page.locator("#search-results li a").evaluate_all("links => links.slice(0, 3).map((one) => one.href)")
     page.context.close()
     assert any("reference/sensor" in one for one in firsts), firsts
+
+
+def test_a_hit_has_an_excerpt_and_shows_its_heading(chromium: Any, address: str) -> None:
+    page = _page(chromium, "light", width=390)
+    page.goto(f"{address}/search.html?q=unknown-key")
+    page.locator("#search-results li p.context").first.wait_for(timeout=15_000)
+    until(page, "document.querySelector('.search-summary').innerText.includes('found')")
+    assert "is not part of the language" in page.locator("#search-results li").first.inner_text()
+    page.locator("#search-results li a").first.click()
+    page.wait_for_url("**/codes.html*#unknown-key")
+    until(page, "document.querySelector('#unknown-key').getBoundingClientRect().top < 300")
+    heading, bar = (
+        "document.querySelector('h3#unknown-key').getBoundingClientRect()",
+        "document.querySelector('header')",
+    )
+    assert page.evaluate(f"{heading}.top - {bar}.getBoundingClientRect().bottom") >= 0
+    assert page.problems == []
+    page.context.close()
+
+
+def test_a_misspelt_word_is_answered_with_the_nearest(chromium: Any, address: str) -> None:
+    page = _page(chromium, "light")
+    page.goto(f"{address}/search.html?q=polcy")
+    page.locator("#search-results li a").first.wait_for(timeout=15_000)
+    assert "No page has “polcy”: these have “policy”." in page.locator("#search-results").inner_text()
+    page.context.close()
+
+
+def test_options_keep_their_dashes(html: Path) -> None:
+    text = (html / "reference" / "codes.html").read_text(encoding="utf-8")
+    assert "irsim policies --for FILE" in text.replace("<span>", "").replace("</span>", "")
+    assert "\N{EN DASH}for" not in text

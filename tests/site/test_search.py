@@ -41,6 +41,11 @@ def test_a_name_leads_first_to_where_it_is_explained(html: Path) -> None:
         "what does unknown-key mean?": "reference/codes#unknown-key",
         "spl": "reference/metrics#spl",
         "neighborDist": "reference/behavior/orca#behavior.orca.neighbordist",
+        "vel max": "reference/robot#robot.vel_max",
+        "range max": "reference/sensor/lidar2d#sensor.lidar2d.range_max",
+        "collision mode": "reference/world#world.collision_mode",
+        "which policy": "reference/things#which-policy",
+        "unknown cells": "reference/things#unknown-cells",
     }
     answered = dict(zip(right, answers(html, list(right)), strict=True))
     assert {question: places[0].lower() for question, places in answered.items()} == right
@@ -49,3 +54,10 @@ def test_a_name_leads_first_to_where_it_is_explained(html: Path) -> None:
     }
     assert 'id="robot.vel_max"' in text["reference/robot"]
     assert 'id="unknown-key"' in text["reference/codes"]
+
+
+@pytest.mark.parametrize(("slip", "word"), [("lidr", "lidar"), ("benchmrk", "benchmark"), ("trajectroy", "trajectory")])
+def test_a_misspelt_word_finds_what_the_word_finds(html: Path, slip: str, word: str) -> None:
+    found, right = answers(html, [slip, word])
+    assert set(found[:5]) <= set(right)
+    assert len(found) >= 5

@@ -12,6 +12,7 @@ myst_links_external_new_tab = False
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["players"]
 highlight_language = "text"
+smartquotes = False
 suppress_warnings = ["myst.header", "misc.highlighting_failure"]
 html_theme = "pydata_sphinx_theme"
 html_title = "irsim"
