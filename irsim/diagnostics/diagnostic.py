@@ -103,15 +103,28 @@ def nearest(word: object, choices: Iterable[str], cutoff: float = 0.6) -> str | 
     """The choice most similar to ``word``; None if none is similar enough.
 
     A choice that has all words of ``word``, which has several, in whatever order is nearer than one of similar letters:
-    ``swap_circle`` means ``circle-swap``, and the last one of several.
+    ``swap_circle`` means ``circle-swap``, and the last one of several. Of names that differ from ``word`` in numbers
+    only, the one with the nearest numbers is the nearest.
     """
     lowered = {str(choice).lower(): str(choice) for choice in choices}
     text, asked = str(word).lower(), _words(str(word))
-    same = [choice for choice in lowered if asked <= _words(choice)] if len(asked) > 1 else []
-    if same and text not in lowered:
+    same = [choice for choice in lowered if asked <= _words(choice)] if len(asked) > 1 and text not in lowered else []
+    matches = same or difflib.get_close_matches(text, list(lowered), max(1, len(lowered)), cutoff)
+    alike = [choice for choice in matches if _NUMBER.sub("0", choice) == _NUMBER.sub("0", text)]
+    if alike:
+        return lowered[min(alike, key=lambda choice: _distance(text, choice))]
+    if same:
         return lowered[min(reversed(same), key=lambda choice: len(_words(choice)))]
-    matches = difflib.get_close_matches(text, list(lowered), 1, cutoff)
     return lowered[matches[0]] if matches else None
+
+
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
+
+
+def _distance(one: str, other: str) -> float:
+    """How far apart the numbers of two names are that have the same words."""
+    pairs = zip(_NUMBER.findall(one), _NUMBER.findall(other), strict=True)
+    return sum(abs(float(mine) - float(yours)) for mine, yours in pairs)
 
 
 def _words(name: str) -> set[str]:

@@ -139,9 +139,15 @@ GUIDES: dict[str, Guide] = {
         "(along the constant twist of each step; the bound of the subdivision is printed), who arrived, the outcome, "
         "path length, mean speed and smallest clearance. It says equal, or names object, step, both values and the "
         "tolerance; contacts within 1e-7 m of touching are listed, not decided. The record has what that needs: "
-        "outlines as drawn, limits, goals, thresholds, the cells of the map, contacts with their times.",
+        "outlines as drawn, limits, goals, thresholds, the cells of the map, contacts with their times. A submission "
+        "(`irsim benchmark SUITE --submission DIR` writes one for others) is checked by `irsim audit DIR`: files, "
+        "scenes, rows, tables and records; --replay 60 also runs 60 of its episodes again. More: guides/audit.md of "
+        "the skill irsim-benchmark.",
         "irsim run hall.yaml --seed 3 --record && irsim audit last",
-        ("irsim audit", "verify a run", "check a recorded run", "tampered record", "referee", "record-incomplete"),
+        (
+            *("submission", "submissions", "submit results", "audit a submission"),
+            *("irsim audit", "verify a run", "check a recorded run", "tampered record", "referee", "record-incomplete"),
+        ),
     ),
     "imports": Guide(
         "maps and people of other programs as scenarios",
@@ -171,9 +177,11 @@ GUIDES: dict[str, Guide] = {
     "cite": Guide(
         "how to cite irsim, a run and a suite",
         "Cite a benchmark with the line `Cite this run` at the end of its report: it has version, engine, suite, its "
-        "hash and the seeds, which are all that is needed to run it again. Cite the program as CITATION.cff of the "
-        "repository says: irsim developers, irsim, its version (`irsim --version`), MIT license. Of a suite or a "
-        "policy that others published also cite its sources, which `irsim describe NAME` names.",
+        "hash and the seeds, which are all that is needed to run it again. Of a single run cite the scenario file and "
+        "seed (the line `reproduce` has both), the version, and the engine, which run.json of a recorded run has "
+        "(--record); publish the file, or the folder of the record, which holds it. Cite the program as CITATION.cff "
+        "of the repository says: irsim developers, irsim, its version (`irsim --version`), MIT license. Of a suite or "
+        "a policy that others published also cite its sources, which `irsim describe NAME` names.",
         "irsim benchmark crowdnav_circle_v2 --seeds 20 --out results   # results/results.md ends with the line",
         ("citation", "citing", "how to cite", "bibtex", "cite this run"),
     ),

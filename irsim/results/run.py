@@ -9,7 +9,7 @@ from pydantic import Field, PrivateAttr
 
 from irsim.common.event_kinds import BETWEEN_STEPS, SIGHTS
 from irsim.common.lazy import call_home
-from irsim.common.notebook import Page, facts, section, table
+from irsim.common.notebook import Page, facts, section, table, text_table
 from irsim.common.text import clean
 from irsim.results.base import Result
 from irsim.results.concise import ConciseEvent, ConciseRobot, ConciseRun, is_command, rounded
@@ -193,15 +193,21 @@ class RunResult(Result):
         page: Page = call_home("irsim.api.kept_run:run_replay", self, height)
         return page
 
+    def __repr__(self) -> str:
+        return f"{self.scenario}: {self.summary}\n{text_table(*self._table())}\nreproduce: {clean(self.reproduce, 400)}"
+
+    __str__ = __repr__
+
     def _repr_html_(self) -> str:
         known = {"seed": self.seed, "simulated": f"{self.sim_time:g} s in {self.steps} steps"}
         known |= {"reproduce": self.reproduce}
+        return section(f"{self.scenario}: {self.summary}", table(*self._table()) if self.robots else "", facts(known))
+
+    def _table(self) -> tuple[Sequence[str], list[Sequence[object]]]:
+        """The columns and rows that show the result."""
         columns = ("robot", "outcome", "time to goal [s]", "collisions", "path [m]", "smallest clearance [m]")
-        rows = [
-            (one.name, one.outcome, one.time_to_goal, one.collision_count, one.path_length, one.min_clearance)
-            for one in self.robots
-        ]
-        return section(f"{self.scenario}: {self.summary}", table(columns, rows) if rows else "", facts(known))
+        keys = ("name", "outcome", "time_to_goal", "collision_count", "path_length", "min_clearance")
+        return columns, [[getattr(one, key) for key in keys] for one in self.robots]
 
     def concise(
         self, *, detailed: bool = False, artifacts: dict[str, str] | None = None, advice: str = ""
@@ -315,10 +321,18 @@ class RunsResult(Result):
         """
         return call_home("irsim.api.kept_run:runs_table", self.episodes, rows, objects, ranges)
 
+    def __repr__(self) -> str:
+        return f"{len(self.episodes)} episodes of {self.scenario}: {self.summary}\n{text_table(*self._table())}"
+
+    __str__ = __repr__
+
     def _repr_html_(self) -> str:
-        columns = ("seed", "outcome", "simulated [s]", "reason")
-        rows = [(one.seed, one.outcome, one.sim_time, one.reason) for one in self.episodes]
-        return section(f"{self.scenario}: {self.summary}", table(columns, rows))
+        return section(f"{self.scenario}: {self.summary}", table(*self._table()))
+
+    def _table(self) -> tuple[Sequence[str], list[Sequence[object]]]:
+        """The columns and rows that show the result."""
+        rows: list[Sequence[object]] = [(one.seed, one.outcome, one.sim_time, one.reason) for one in self.episodes]
+        return ("seed", "outcome", "simulated [s]", "reason"), rows
 
     @property
     def shown(self) -> RunResult:

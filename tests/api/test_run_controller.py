@@ -74,6 +74,18 @@ def test_the_documented_controller_drives_to_its_goal(
     assert not names["result"].same
 
 
+def test_a_printed_result_is_a_short_table(scene: Path) -> None:
+    result = irsim.episodes(scene, controllers.wander, seeds=12, workers=1)
+    first, columns, *rows = str(result).splitlines()
+    assert first == f"12 episodes of {scene}: {result.summary}"
+    assert columns.split() == ["seed", "outcome", "simulated", "[s]", "reason"]
+    assert [row.split()[:2] for row in rows[:2]] == [[str(one.seed), one.outcome] for one in result.episodes[:2]]
+    assert rows[-1] == "and 2 more rows"
+    one = result.episodes[3]
+    assert str(one).startswith(f"{one.scenario}: {one.summary}\nrobot ")
+    assert len(str(result)) < 4000 > len(str(one))
+
+
 def test_episodes_without_randomness_say_that_they_are_the_same(scene: Path) -> None:
     fixed = SCENE.replace(
         "distribution: {name: random, range_low: [1, 1, -3], range_high: [11, 11, 3]}", "state: [1, 1]"

@@ -94,6 +94,15 @@ def test_words_in_another_order_mean_the_name_that_has_them_all(word: str, meant
     assert nearest(word, ["crowdnav-circle", "circle_swap_v1", "circle_swap_v2", "random-polygons"]) == meant
 
 
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [("posts-31/freeze", "posts-30/freeze"), ("posts-40/freeze", "posts-45/freeze"), ("step-30-0.1", "step-30-0.05")],
+)
+def test_of_names_with_other_numbers_the_nearest_number_is_meant(word: str, meant: str) -> None:
+    names = ["posts-15/freeze", "posts-30/freeze", "posts-45/freeze", "posts-31/yield", "step-30-0.05", "step-30-0.2"]
+    assert nearest(word, names) == meant
+
+
 def test_places_are_told_as_in_python() -> None:
     assert format_path(("robot", 0, "shape", "vertices", 3, 1)) == "robot[0].shape.vertices[3][1]"
     assert format_path(()) == "(document)"

@@ -36,6 +36,7 @@ MEANT = {
     "2.12": "differences",
     "IR-SIM 2.12": "differences",
     "how to cite": "cite",
+    "submission": "audit",
     "unknown cells": "unknown-cells",
     "pedestrian": "robot.behavior.sfm",
     "social force": "robot.behavior.sfm",
