@@ -136,7 +136,8 @@ def _locates(options: Any) -> bool:
 def _perception(source: _Source) -> str:
     return (
         "Sensors that tell a robot where it is, how it moves and where others are, each with its errors. A program "
-        "reads them by name (`sensor.read()`); with `perceives` the behavior or policy of the robot goes by them.\n\n"
+        "reads them by name (`sensor.read()`); with `perceives` the behavior or policy of the robot goes by them. "
+        "Records keep what they report; `irsim inspect --fields readings`, exports and messages of ROS have it.\n\n"
         f"{_components(source, 'sensor', among=_locates)}"
     )
 

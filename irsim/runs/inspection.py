@@ -16,6 +16,7 @@ from irsim.metrics import approaches
 from irsim.results.run import RunTable
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
+from irsim.runs.readings import NOT_RECORDED, reading_cell, reading_columns
 from irsim.runs.resimulation import scenario_of
 from irsim.runs.tables import (
     Cell,
@@ -43,7 +44,6 @@ _MIN_SPEED = 1e-3
 """Speed [m/s] below which an object stands still."""
 _CONTACTS = ("collision", *BETWEEN_STEPS)
 """Kinds of events of the view ``collisions``."""
-_NOT_RECORDED = "not recorded"
 _MIN_STEERED_SPEED = 0.01
 """Speed [m/s] from which on the path of a car tells its steering angle."""
 _MAX_PARTNERS = 5
@@ -84,7 +84,8 @@ def inspect_run(
         from_step: First step.
         to_step: Last step; default: the last step of the run.
         every: Take every Nth step; default: the smallest N with which the table fits into ``limit``.
-        fields: Columns of ``rows``, see :data:`FIELDS`.
+        fields: Columns of ``rows``, see :data:`FIELDS`; ``readings``: what sensors without beams report; or one number
+            of a sensor, such as ``odometry.x`` or ``imu.yaw_rate``.
         limit: Greatest number of rows of the table, None for all.
         cursor: ``next_cursor`` of the previous page; all other arguments as in that call.
         workspace: Folder whose ``.irsim/runs`` holds the run; default: the current directory.
@@ -101,8 +102,8 @@ def inspect_run(
         to = "on" if to_step is None else f"to {to_step}"
         what = f"run {opened.id} has no steps from {from_step} {to}"
         raise RunError("step-out-of-range", what, opened.extent, where="from_step" if from_step > end else "to_step")
-    chosen = _fields(fields)
     objects, named = chosen_objects(opened, robot)
+    chosen = _fields(fields, reading_columns(trace, objects))
     start = _start(cursor)
     question = Question(
         opened, trace, objects, named, from_step - begin, last - begin, every, chosen, start, limit, limits
@@ -147,14 +148,22 @@ def _empty(question: Question, view: str, table: Table) -> list[str]:
 # request --------------------------------------------------------------------------------------------------------------
 
 
-def _fields(names: Sequence[str] | None) -> Sequence[Field]:
+def _fields(names: Sequence[str] | None, readings: Sequence[str]) -> Sequence[str]:
+    """The columns of the view ``rows``.
+
+    Args:
+        names: Names as given.
+        readings: Numbers of sensors of the chosen objects.
+    """
     if names is None:
         return _SHOWN
+    known = [*FIELDS, *readings]
     for index, name in enumerate(names):
-        if name not in FIELDS:
-            fix = suggestion(name, FIELDS, f"the fields are {', '.join(FIELDS)}")
+        if name not in known:
+            fix = suggestion(name, known, f"the fields are {', '.join(known)}")
             raise RunError("bad-argument", f"{clean(name)!r} is not a valid field", fix, where=f"fields[{index}]")
-    return [field for field in FIELDS if field in names]
+    told = [name for name in readings if "readings" in names or name in names]
+    return [*(field for field in FIELDS if field in names and field != "readings"), *told]
 
 
 def _start(cursor: str | None) -> int:
@@ -199,7 +208,9 @@ def _controls(asked: Question) -> int:
     return max((count for count in chosen if isinstance(count, int) and 0 < count <= 3), default=2)
 
 
-def _cells(asked: Question, field: Field, row: int, index: int, controls: int) -> list[Cell]:
+def _cells(asked: Question, field: str, row: int, index: int, controls: int) -> list[Cell]:
+    if "." in field:
+        return [reading_cell(asked.trace, field, row, index)]
     trace, no_goal = asked.trace, not asked.run.resolved["objects"][index].get("goals")
     x, y, heading = trace.pose[row, index].tolist()
     goal_x, goal_y, _ = trace.goal[row, index].tolist()
@@ -216,7 +227,7 @@ def _cells(asked: Question, field: Field, row: int, index: int, controls: int) -
         prefix = f"{trace.names[index]}/"
         blocks = [block for key, block in trace.ranges.items() if key.startswith(prefix)]
         if any(row >= len(block) for block in blocks):
-            return [_NOT_RECORDED]
+            return [NOT_RECORDED]
         least = [float(block[row].min()) for block in blocks if block.size]
         return [rounded(min(least, default=math.inf))]
     if field == "speed":

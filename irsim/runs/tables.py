@@ -31,7 +31,9 @@ __all__ = [
 _DECIMALS = 4
 """Decimals of the numbers of a table."""
 Cell = float | int | str | bool | None
-Field = Literal["x", "y", "heading", "speed", "turn_rate", "control", "goal", "goal_distance", "nearest_hit", "status"]
+Field = Literal[
+    "x", "y", "heading", "speed", "turn_rate", "control", "goal", "goal_distance", "nearest_hit", "status", "readings"
+]
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ class Question:
     first: int
     last: int
     every: int | None
-    fields: Sequence[Field]
+    fields: Sequence[str]
     start: int
     limit: int | None
     limits: Limits | None

@@ -96,6 +96,18 @@ async def test_long_tables_are_cut_to_what_a_model_reads(workspace: Path) -> Non
     assert steps == list(range(open_run(str(ask["run_id"]), workspace).last_step + 1))
 
 
+async def test_tables_have_what_sensors_report(client: Caller, workspace: Path) -> None:
+    sensing = CRASH.replace(
+        "- name: rover", "- name: rover\n    sensors: [{name: odometry}, {name: imu, gyro_noise: 0.1}]"
+    )
+    run_id = (await client.data("run_episode", scenario_yaml=sensing, seed=3))["run_id"]
+    data = await client.data("inspect_run", run_id=run_id, fields=["x", "readings"], every=1, limit=3)
+    assert data["columns"][3:6] == ["x", "odometry.x", "odometry.y"]
+    assert data["columns"][-3:] == ["imu.yaw_rate", "imu.ax", "imu.ay"]
+    readings = open_run(run_id, workspace).trace().readings
+    assert data["rows"][2][-3] == pytest.approx(readings["rover/imu"]["yaw_rate"][2], abs=1e-4)
+
+
 async def test_unknown_runs_name_recent_ones(client: Caller, workspace: Path) -> None:
     assert "there are no runs here; runs are deleted 24 h after" in await client.error("inspect_run", run_id="x")
     run_id = await crashed(client)

@@ -91,7 +91,20 @@ def columns_of(episodes: Sequence[ExportedEpisode]) -> list[Column]:
         for number in range(lidars)
     ]
     before = [column.name for column in _COLUMNS].index("goal_x")
-    return [*_COLUMNS[:before], *controls, *_COLUMNS[before:], *ranges]
+    return [*_COLUMNS[:before], *controls, *_COLUMNS[before:], *ranges, *_reading_columns(episodes)]
+
+
+def _reading_columns(episodes: Sequence[ExportedEpisode]) -> list[Column]:
+    """``<sensor>.<number>`` of all sensors that report numbers, each once."""
+    columns: dict[str, Column] = {}
+    for episode in episodes:
+        for gauge in episode.gauges:
+            kind: Literal["ranges", "number"] = "ranges" if gauge.has_rows else "number"
+            told = "all that the sensor of the object reports" if gauge.has_rows else "what the sensor reports"
+            for name, unit in gauge.units.items():
+                called = f"{gauge.sensor}.{name}"
+                columns.setdefault(called, Column(called, kind, f"{name} by the sensor {gauge.sensor}: {told}", unit))
+    return list(columns.values())
 
 
 def table_parts(episode: ExportedEpisode, columns: Sequence[Column]) -> Iterator[dict[str, Cells]]:
@@ -133,6 +146,8 @@ def _cells(episode: ExportedEpisode, block: Block, columns: Sequence[Column]) ->
             cells[column.name] = _control(episode, block, int(number))
         elif kind == "ranges":
             cells[column.name] = _ranges(episode, block, int(number))
+        elif "." in column.name:
+            cells[column.name] = _readings(episode, block, column)
     return {column.name: cells[column.name] for column in columns}
 
 
@@ -142,6 +157,29 @@ def _control(episode: ExportedEpisode, block: Block, number: int) -> NDArray[np.
     values = np.where(has, block.trace.control[:, :, number] if number < 3 else np.nan, np.nan)
     values[block.trace.step == 0] = np.nan
     return values.ravel()
+
+
+def _readings(episode: ExportedEpisode, block: Block, column: Column) -> NDArray[np.float64] | Ranges:
+    """A number of a sensor of all actors; NaN for those without it, and where it was not recorded."""
+    sensor, _, name = column.name.partition(".")
+    steps, count = len(block.trace), len(episode.actors)
+    values = np.full((steps, count), np.nan)
+    rows: dict[int, NDArray[np.float64]] = {}
+    for gauge in episode.gauges:
+        readings = block.trace.readings[gauge.key]
+        if gauge.sensor == sensor and gauge.has_rows:
+            rows[gauge.actor] = readings[name]
+        elif gauge.sensor == sensor:
+            values[: len(readings), gauge.actor] = readings[name]
+    if column.kind == "number":
+        return values.ravel()
+    lengths, parts = np.full((steps, count), -1, dtype=np.int64), [np.zeros(0)]
+    for step in range(steps):
+        for actor, table in sorted(rows.items()):
+            if step < len(table):
+                parts.append(table[step][np.isfinite(table[step])])
+                lengths[step, actor] = len(parts[-1])
+    return Ranges(np.concatenate(parts).astype(np.float32), lengths.ravel())
 
 
 def _ranges(episode: ExportedEpisode, block: Block, number: int) -> Ranges:

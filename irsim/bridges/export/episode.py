@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.bridges.export.readings import ExportedGauge, exported_gauges
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 from irsim.components.sensors._gauges import GaugeOptions
@@ -185,14 +186,20 @@ class ExportedEpisode:
         return tuple(result)
 
     @cached_property
+    def gauges(self) -> tuple[ExportedGauge, ...]:
+        """The sensors of the actors that report numbers; those that report rows of them belong to the ranges."""
+        gauges = exported_gauges(self.run, self.actors)
+        return tuple(gauge for gauge in gauges if self.with_ranges or not gauge.has_rows)
+
+    @cached_property
     def last_step(self) -> int:
         """Last recorded step."""
         return self.run.last_step
 
     @property
     def last_scan(self) -> int:
-        """Last step whose scans are exported; -1 without any."""
-        if not self.lidars:
+        """Last step whose scans and readings are exported; -1 without any."""
+        if not (self.lidars or self.gauges):
             return -1
         until = self.run.meta.get("scans_until")
         return self.last_step if until is None else min(self.last_step, int(until))
@@ -206,17 +213,18 @@ class ExportedEpisode:
         """Yield the run in blocks of limited size.
 
         Args:
-            scans: Whether to read scans, if ranges are exported.
+            scans: Whether to read scans and readings, if any are exported.
 
         Raises:
             RunError: A file of the run has been changed, or no step was recorded.
         """
-        width = 16 * len(self.actors) + sum(lidar.beams for lidar in self.lidars)
+        measured = sum(lidar.beams for lidar in self.lidars) + sum(gauge.count for gauge in self.gauges)
+        width = 16 * len(self.actors) + measured
         rows = min(_MAX_BLOCK_ROWS, max(2, _BLOCK_NUMBERS // max(1, width)))
         before: Floats | None = None
         chosen = [actor.index for actor in self.actors]
         aimless = [column for column, actor in enumerate(self.actors) if not actor.has_goal]
-        for trace in self.run.blocks(rows, chosen, scans=scans and self.with_ranges):
+        for trace in self.run.blocks(rows, chosen, scans=scans and measured > 0):
             led = np.concatenate([trace.pose[:1] if before is None else before, trace.pose[:-1]])
             velocity = (trace.pose - led) / trace.step_time
             velocity[:, :, 2] = wrap(trace.pose[:, :, 2] - led[:, :, 2]) / trace.step_time
@@ -250,7 +258,7 @@ class ExportedEpisode:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """Facts of the run, as JSON types: everything that reproduces it, its objects and its lidars."""
+        """Facts of the run, as JSON types: what reproduces it, its objects, lidars and units of readings."""
         meta, result = self.run.meta, self.run.result
         resolved = self.run.resolved
         objects, built = resolved["objects"], resolved.get("built", {})
@@ -278,6 +286,7 @@ class ExportedEpisode:
                 }
                 for lidar in self.lidars
             ],
+            **({"readings": {gauge.key: dict(gauge.units) for gauge in self.gauges}} if self.gauges else {}),
         }
 
 

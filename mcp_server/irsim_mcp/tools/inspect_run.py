@@ -25,7 +25,7 @@ _DESCRIPTION = """
     Why did a run fail? view=collisions: which objects touched, where, how fast; closest: closest approaches of each
     robot, edge to edge; speeds: path, extreme speeds (forward <0: backwards), turn rates, longest stop; zones: who
     entered or crossed what; sight: who saw whom; rows: `fields` step by step, spread over the run unless `every` is
-    given. Of a benchmark: its episodes. Returns a table, in pages (next_cursor). Next: draw the moment with
+    given. Of a benchmark: its episodes. Returns pages (next_cursor). Next: draw the moment with
     render_snapshot run_id step.
 """
 _MAX_CELL_LENGTH = 60
@@ -40,7 +40,7 @@ Cell = Annotated[float | int | str | bool | None, WithJsonSchema({"type": ["numb
 
 
 Column = Literal[
-    "x", "y", "heading", "speed", "turn_rate", "control", "goal", "goal_distance", "nearest_hit", "status"
+    "x", "y", "heading", "speed", "turn_rate", "control", "goal", "goal_distance", "nearest_hit", "status", "readings"
 ]  # fmt: skip
 
 

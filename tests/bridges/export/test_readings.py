@@ -160,3 +160,17 @@ def fields_of(message: Any) -> Any:
     if isinstance(message, (list, tuple, np.ndarray)):
         return [fields_of(one) for one in message]
     return [fields_of(getattr(message, name)) for name in message.__slots__]
+
+
+def test_parquet_has_the_numbers_with_units_and_lists_of_tracks(run: Run) -> None:
+    import pyarrow.parquet as pq
+
+    irsim.export_run(run, "run.parquet", objects="robots")
+    table, trace = pq.read_table("run.parquet"), run.trace()
+    field = table.schema.field("odometry.yaw_rate")
+    assert field.metadata[b"unit"] == b"rad/s"
+    assert table["gnss.x"].to_pylist()[:3] == trace.readings["rover/gnss"]["x"][:3].tolist()
+    assert None in table["gnss.x"].to_pylist(), "in the tunnel"
+    tracks = table["detector.x"].to_pylist()
+    assert tracks[10] == pytest.approx(trace.readings["rover/detector"]["x"][10, :1])
+    assert all(len(some) == 1 for some in tracks)

@@ -63,7 +63,7 @@ def write_run(episode: ExportedEpisode, bag: Bag, messages: Messages) -> list[st
         changed = _goal_changes(block.trace.goal, goal)
         goal = block.trace.goal[-1:].copy()
         writer.add_block(block, changed)
-    if episode.lidars and episode.last_scan < episode.last_step:
+    if (episode.lidars or episode.gauges) and episode.last_scan < episode.last_step:
         notes.append(f"scans end at step {episode.last_scan} of {episode.last_step}, as they do in the record")
     return notes
 

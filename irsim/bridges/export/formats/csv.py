@@ -1,8 +1,8 @@
 """``csv``: the table of the format ``parquet`` as text, which needs no library; without metadata.
 
-Numbers read back exactly, empty cells stand for missing values, and flags are 0 and 1. Ranges are left out unless asked
-for; a scan is then one cell, its ranges separated by spaces. A name that a spreadsheet would run as a formula,
-because it begins with ``=``, ``+``, ``-`` or ``@``, has an apostrophe before it.
+Numbers read back exactly, empty cells stand for missing values, and flags are 0 and 1. Ranges and tracks are
+left out unless asked for; a scan is then one cell, its ranges separated by spaces. A name that a spreadsheet would run
+as a formula, because it begins with ``=``, ``+``, ``-`` or ``@``, has an apostrophe before it.
 """
 
 from __future__ import annotations

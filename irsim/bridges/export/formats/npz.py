@@ -3,7 +3,8 @@
 The arrays are ``step`` and ``time`` (T,), ``pose``, ``velocity``, ``control`` and ``goal`` (T, N, 3), the flags
 ``arrived``, ``collided``, ``stopped`` and ``between_steps`` (T, N), which says whether an object touched something
 within the step and at neither end of it, ``command`` (T, N, 3) if an object has ``actuation``,
-``ranges/<object>/<number>`` (T, beams), ``names`` and ``roles`` (N,), and
+``ranges/<object>/<number>`` (T, beams), ``readings/<object>/<sensor>``, structured arrays (T,), of a detector (T, K),
+whose fields are the numbers that the sensor reports by name, ``names`` and ``roles`` (N,), and
 ``about``, a JSON text with the units, and with the scenario, seed, versions, result and objects of the run.
 """
 
@@ -50,7 +51,8 @@ _TRACE: Mapping[str, Callable[[Block], NDArray[Any]]] = {
 def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list[str]:
     """Write one array after the other; the run is read once for each, so that it need not fit in memory."""
     [episode] = episodes
-    about = {"units": _UNITS, "run": episode.facts}
+    units = {f"readings/{gauge.key}": dict(gauge.units) for gauge in episode.gauges}
+    about = {"units": {**_UNITS, **units}, "run": episode.facts}
     whole = {
         "names": np.array([actor.name for actor in episode.actors]),
         "roles": np.array([actor.role for actor in episode.actors]),
@@ -67,6 +69,9 @@ def _write(episodes: Sequence[ExportedEpisode], target: Path, name: str) -> list
         for lidar in episode.lidars:
             scans = (block.trace.ranges[lidar.key] for block in episode.blocks())
             _add(archive, f"ranges/{lidar.key}", episode.last_scan + 1, scans)
+        for gauge in episode.gauges:
+            readings = (block.trace.readings[gauge.key] for block in episode.blocks())
+            _add(archive, f"readings/{gauge.key}", episode.last_scan + 1, readings)
     return []
 
 

@@ -4,7 +4,8 @@ Its columns are ``run``, ``step``, ``time``, ``name``, ``role``, the pose ``x``,
 ``vy``, ``yaw_rate``, ``speed``, the commanded controls ``control_0``, … (after
 limits, before the noise of the drive), the present goal ``goal_x``, ``goal_y``,
 ``goal_theta``, ``goal_distance``, the flags ``arrived``, ``collided``, ``stopped`` and ``between_steps`` (it touched
-something within the step, at neither end of it), and a list of ranges ``ranges_0``, … for each lidar of an object.
+something within the step, at neither end of it), a list of ranges ``ranges_0``, … for each lidar of an object, and
+what its other sensors report: ``odometry.x``, ``imu.yaw_rate``, …, of a detector lists of all tracks.
 Numbers that do not exist are null: velocities and controls at the start, goals of objects without one, controls that
 only other drives have, scans that were not recorded.
 
