@@ -276,7 +276,7 @@ def _takes(key: Key) -> str:
     if key.type in ("a name", "a value"):
         return ", ".join(f"`{name}`" for name in (key.allowed or "").split(", "))
     if not key.type:  # a parameter of a template: the range names the unit
-        return re.sub(r"^an? ", "", key.allowed or "")
+        return re.sub(r"^an? (number from )?", "", key.allowed or "")
     unit = key.unit or ""
     if unit and not unit.startswith("["):
         unit = f"[{unit}]"

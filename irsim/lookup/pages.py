@@ -202,7 +202,8 @@ def _templates(source: _Source) -> str:
         answer = source.about(template.name)
         usual = list(template.outcomes) == ["success"]
         about = template.purpose if usual else f"{template.purpose} Outcome: {' or '.join(template.outcomes)}."
-        words = f"Tags: {', '.join(template.tags)}."
+        said = f"{template.name.replace('-', ' ')} {template.purpose}".lower()
+        words = f"Tags: {', '.join(tag for tag in template.tags if tag.lower() not in said)}."
         parts.append(f"## {template.name}\n\n{about}\n{words}\n\n{key_list(_all_keys(answer))}")
     return "\n\n".join(parts)
 

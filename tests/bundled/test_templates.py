@@ -175,7 +175,7 @@ RUNS: dict[str, list[tuple[dict[str, Any], str]]] = {
     "lidar-explorer": [({"speed": 0.1}, "success")],
     "obstacle-field": [({"speed": 0.1}, "success")],
     "overtaking": [({"slow": 0.1}, "success")],
-    "race": [({"slow": 0.6}, "success"), ({"grip": 0.3}, "collision")],
+    "race": [({"slow": 0.6}, "success"), ({"grip": 0.1}, "collision")],
     # A robot that goes by the turns of its wheels is lost after the patch; localization copes with any.
     "slippery-hall": [({"knows": "odometry"}, "collision"), ({"slip": 0.8}, "success"), ({"spread": 0.3}, "success")],
     "noisy-warehouse": [({"position": 0.15}, "success"), ({"seen": 0.3}, "success"), ({"speed": 0.3}, "success")],

@@ -14,12 +14,11 @@ from irsim.options.units import Bool, Count, Meters, MetersPerSecond, Seconds
 
 
 class FootprintOrca(BehaviorOptions):
-    """Avoid others by their true outlines instead of circles, and go round what stands: for dense crowds of robots.
+    """Avoid others by their true outlines instead of circles: for dense crowds of robots.
 
     Robots that all run it touch neither each other nor what stands, if drives are exact: within `acce` each can always
-    stop where no other may be. It plans a way round robots that stand and static obstacles, at most 4 m aside; without
-    progress it tries random directions. Arrived robots make room and come back. Around larger walls use it as the
-    `local` of `follow`.
+    stop where no other may be. It plans a way round what stands, at most 4 m aside; without progress it tries random
+    directions. Arrived robots make room and come back. Around larger walls use it as the `local` of `follow`.
     """
 
     in_group: ClassVar[bool] = True

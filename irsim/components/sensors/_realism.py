@@ -17,6 +17,9 @@ __all__ = ["LidarRealism"]
 Share = Annotated[Fraction, Field(lt=1)]
 Sector = Annotated[list[Component], vector(("rad", "rad"), 2)]
 
+_DARK, _WHITE = 0.1, 0.9
+"""Reflectivities of the surfaces for which ranges are told."""
+
 
 class LidarRealism(Options):
     """How the ranges of a lidar differ from exact ones; each key is off unless it is given.
@@ -82,6 +85,17 @@ class LidarRealism(Options):
                 fix="make one of them smaller",
             )
         return self
+
+    def range_of(self, reflectivity: float, range_max: float) -> float:
+        """The range at which half of the beams come back from a surface that they hit at right angles [m].
+
+        Args:
+            reflectivity: Share of the light that the surface throws back.
+            range_max: Range of the lidar [m].
+        """
+        dark = range_max if self.range_dark is None else min(self.range_dark, range_max)
+        growth = math.log(range_max / dark) / math.log(_WHITE / _DARK)
+        return min(range_max, dark * math.pow(reflectivity / _DARK, growth))
 
     def kernel(self, range_max: float, spacing: float, scan_time: float) -> core.LidarErrors:
         """The options of the core.

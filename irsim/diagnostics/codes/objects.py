@@ -290,6 +290,14 @@ OBJECTS: dict[str, Code] = {
         "A lidar does not see its own robot. Beams shorter than the robot's body see nothing before the robot has "
         "hit it. Example: range_max: 0.2 on a robot of radius 0.3; write range_max: 5. Lengths are in metres.",
     ),
+    "lidar-too-short": Code(
+        "lidar that sees less far than its robot needs to stop",
+        "What comes into reach of a lidar at top speed must be farther away than the robot drives until it stands: one "
+        "step, 'rate' and 'latency' of the lidar and the 'actuation' of the robot pass before it brakes by 'acce'. "
+        "With 'range_dark' of 'realism', or of a 'device', the darkest object ('reflectivity') counts. Behaviors know "
+        "what stands without a lidar; policies and programs that go by it need one that sees farther, or less speed. "
+        "Example: range_max: 1 at 2 m/s with acce: [1, 2]; write range_max: 5.",
+    ),
     "lidar-noise-off": Code(
         "noise settings without noise",
         "std and angle_std have an effect only with 'noise: true' (velocity_noise_std always has).",

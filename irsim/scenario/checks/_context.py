@@ -65,6 +65,14 @@ class Context:
         bridges: list[Any] = list(self.resolved.bridges)
         return frozenset(name for bridge in bridges for name in bridge.driven(robots))
 
+    def why_undriven(self, record: ObjectRecord) -> str | None:
+        """Why neither a behavior nor a policy moves an object, as a predicate; None if one may."""
+        if record.kinematics is None:
+            return "has no drive"
+        if record.static:
+            return "is static"
+        return "replays a recording" if record.recorded and record.role == "obstacle" else None
+
     def entry(self, path: Path) -> Entry:
         """The entry at a path: ("robot", 0) or ("robot",)."""
         section: Any = getattr(self.scenario, str(path[0]))

@@ -63,12 +63,8 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 
 def _why_unused(context: Context, record: ObjectRecord) -> str | None:
-    if record.kinematics is None:
-        return "has no drive"
-    if record.static:
-        return "is static"
-    if record.recorded and record.role == "obstacle":
-        return "replays a recording"
+    if (why := context.why_undriven(record)) is not None:
+        return why
     return "is moved by the calling program" if context.scenario.world.step_mode == "external" else None
 
 

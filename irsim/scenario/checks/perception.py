@@ -1,14 +1,20 @@
-"""Checks that objects have the sensors which they decide from."""
+"""Checks that objects have the sensors which they decide from, and that these are good enough to arrive."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from typing import Any
 
+from irsim.common.text import metres
 from irsim.components.sensors.detector import Detector
 from irsim.components.sensors.localization import Localization
 from irsim.components.sensors.odometry import Odometry
+from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.checks._context import Context, distinct
-from irsim.scenario.messages.findings import Finding, error
+from irsim.scenario.messages.findings import Finding, error, hint, warning
+from irsim.scenario.resolve.body_size import SizedBody, SizedShape
+from irsim.scenario.resolve.odometry_drift import Drift, drift_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 
@@ -18,6 +24,17 @@ def check(context: Context) -> Iterator[Finding]:
 
 
 def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    path = context.entry_path(record, "perceives")
+    if record.perceives != "truth" and (why := context.why_undriven(record)) is not None:
+        yield warning(
+            "perceives-unused",
+            path,
+            f"'{record.name}' {why}, so nothing decides from what it perceives",
+            given=record.perceives,
+            fix="remove 'perceives'",
+            edit=Edit("remove", path) if path[-1] == "perceives" else None,
+        )
+        return
     needs = (
         (record.estimates, (Localization, Odometry), "localization", "an estimate of its pose"),
         (record.follows_tracks, (Detector,), "detector", "tracks of other objects"),
@@ -27,8 +44,44 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             continue
         yield error(
             "perceives-without-sensor",
-            context.entry_path(record, "perceives"),
+            path,
             f"'{record.name}' decides from {what}, and has no sensor that reports it",
             given=record.perceives,
             fix=f"add {{name: {name}}} to its sensors, or write 'perceives: truth'",
         )
+    if record.estimates and not any(isinstance(sensor, Localization) for sensor in record.sensors):
+        yield from _drifts(context, record)
+
+
+def _drifts(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    """Odometry that is farther off at the goal than the goal is wide."""
+    found = next((k for k, sensor in enumerate(record.sensors) if isinstance(sensor, Odometry)), None)
+    placed = any(record.id in placement.objects for placement in context.resolved.placements)
+    if found is None or placed or not record.goals or record.wander:
+        return
+    sensor: Any = record.sensors[found]
+    legs = SizedBody(record, SizedShape(record.shape)).legs
+    sideways = getattr(record.kinematics, "speeds", 1) == 2
+    drift = drift_of(sensor, legs, None if sideways else record.state[2])
+    if not drift.error > record.goal_threshold:
+        return
+    worst = max(drift.parts, key=drift.parts.__getitem__)
+    way = sum(math.dist(a, b) for a, b in legs)
+    yield hint(
+        "odometry-drifts",
+        (*context.entry_path(record, "sensors"), found),
+        f"'{record.name}' goes by its odometry alone, which is off by {metres(min(drift.error, way))} (root mean "
+        f"square) after {metres(way)} of way, mostly by {worst}; its goal_threshold is {metres(record.goal_threshold)}",
+        fix="add {name: localization} to its sensors" + _smaller(sensor, drift, worst, record.goal_threshold),
+    )
+
+
+def _smaller(sensor: Odometry, drift: Drift, key: str, threshold: float) -> str:
+    """The value of the worst key with which the error is the threshold, if that key alone can do it."""
+    others = drift.error**2 - drift.parts[key] ** 2
+    if not 0 <= others < threshold**2:
+        return ""
+    value = getattr(sensor, key) * math.sqrt(threshold**2 - others) / drift.parts[key]
+    digits = 1 - math.floor(math.log10(abs(value)))
+    value = math.copysign(math.floor(abs(value) * 10**digits) / 10**digits, value)
+    return f", or write {key}: {value:g}"

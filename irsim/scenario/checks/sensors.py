@@ -10,6 +10,7 @@ from irsim.common.angles import FULL_TURN
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.options.units import is_span
 from irsim.scenario.checks._context import Context
+from irsim.scenario.checks.lidar_range import short_lidar
 from irsim.scenario.checks.regions import unknown_zone
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.lookup import at
@@ -37,7 +38,8 @@ def check(context: Context) -> Iterator[Finding]:
             seen.add(where)
             for index, sensor in enumerate(record.sensors):
                 yield from _sensor(context, (*where, index), sensor)
-                yield from _blind_lidar(context, (*where, index), sensor, record)
+                blind = list(_blind_lidar(context, (*where, index), sensor, record))
+                yield from blind or short_lidar(context, (*where, index), sensor, record)
         if not records:
             continue
         lidar = next((s for s in records[0].sensors if getattr(s, "is_lidar", False)), None)

@@ -34,12 +34,14 @@ class Braking(NamedTuple):
 
 def braking_of(record: ObjectRecord) -> Braking | None:
     """How an object brakes; None if it stops at once, or does not drive."""
-    speed, travel = top_speed(record), max(1, getattr(record.kinematics, "speeds", 1))
+    travel = max(1, getattr(record.kinematics, "speeds", 1))
+    limits = [float(limit) for limit in record.acce[:travel] if 0 < limit < math.inf]
+    if not limits:
+        return None
     options: Any = record.active_behavior
     most = getattr(getattr(options, "local", options), "maxSpeed", None)
-    speed = speed if most is None else min(speed, most)
-    limits = [float(limit) for limit in record.acce[:travel] if 0 < limit < math.inf]
-    if not limits or not 0 < speed < math.inf:
+    speed = top_speed(record) if most is None else min(top_speed(record), most)
+    if not 0 < speed < math.inf:
         return None
     acce = min(limits)
     return Braking(speed, acce, speed / acce, speed * speed / (2 * acce))
