@@ -47,7 +47,7 @@ PARTS = (
         "hit",
         "goal",
     ),
-    *("halo", "body", "beams", "arrow", "dart", "head", "ring", "contact", "badge", "sign", "frame", "foot"),
+    *("halo", "body", "beams", "arrow", "dart", "belief", "head", "ring", "contact", "badge", "sign", "frame", "foot"),
 )
 """Drawing order of the parts that have the same zorder."""
 

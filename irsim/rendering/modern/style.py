@@ -13,6 +13,7 @@ from irsim.graphics.scene.groups import kept
 from irsim.graphics.scene.scene import Bounds, Fog, GridImage, Group, Label, Mark, Scene, Stroke
 from irsim.graphics.scene.theme import Theme
 from irsim.rendering.modern import bodies, frame, ground, heading, names, sensing, signs, ways
+from irsim.rendering.modern.beliefs import belief_marks
 from irsim.rendering.modern.layout import Layout
 from irsim.rendering.modern.things import MANY_PEOPLE, Crowd, Thing, read_things
 from irsim.simulation.events import Event, passable_names, read_events
@@ -137,7 +138,7 @@ class ModernStyle:
         if fog is not None:
             marks += self._hatch(fog, layout)
         body_marks, groups = self._bodies(things, scene, layout)
-        marks += body_marks
+        marks += [*body_marks, *belief_marks(things, simulation, layout)]
         for picture in scene.pictures:
             picture.zorder = bodies.STILL_Z if by_number[picture.object].kind == "still" else USER_ZORDER + 1.3
         marks += self._views(scene, by_number, crowd, layout)
