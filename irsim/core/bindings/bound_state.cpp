@@ -76,7 +76,7 @@ void BoundState::expose() {
   beam_angles = view<double>(state.beam_angles.memory, {beams});
   velocities = view<double>(state.velocities.memory, {state.velocities.size});
   readings = view<double>(state.readings.memory, {state.readings.size});
-  stamp = view<double>(state.stamp.memory, {worlds, world->sensors_per_world()});
+  stamp = view<double>(state.stamp.memory, {worlds, world->sensors_per_world});
   const bool foggy = world->fog.has_value();
   const std::size_t columns = foggy ? world->fog->columns : 0, fog_rows = foggy ? world->fog->rows : 0;
   explored = view<std::uint8_t>(state.explored.memory, {worlds, columns, fog_rows});

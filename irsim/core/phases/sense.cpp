@@ -17,16 +17,26 @@ struct Data {
   double *velocities, *readings, *stamp;
 };
 
-/// The data that a sensor shows; `number` is its place among the sensors of a world.
-Data shown(const World& world, const State& state, int w, const Mount& mount, std::size_t number) {
+/// The data that the sensors of a world show.
+Data shown(const World& world, const State& state, int w) {
   const auto at = static_cast<std::size_t>(w);
-  const std::size_t beam = at * world.beams_per_world + mount.first;
+  const std::size_t beam = at * world.beams_per_world;
   return {state.ranges.data + beam,
           state.hits.data + beam,
           state.valid.data + beam,
-          state.velocities.data + at * world.velocities_per_world + mount.first_velocity,
-          state.readings.data + at * world.readings_per_world + mount.first_reading,
-          state.stamp.data + at * world.sensors_per_world() + number};
+          state.velocities.data + at * world.velocities_per_world,
+          state.readings.data + at * world.readings_per_world,
+          state.stamp.data + at * world.sensors_per_world};
+}
+
+/// The data of one of them; `number` is its place among them.
+Data part_of(const Data& all, const Mount& mount, std::size_t number) {
+  return {all.ranges + mount.first,
+          all.hits + mount.first,
+          all.valid + mount.first,
+          all.velocities + mount.first_velocity,
+          all.readings + mount.first_reading,
+          all.stamp + number};
 }
 
 /// A slot of a sensor whose data are late.
@@ -117,10 +127,11 @@ void measure_in_time(const World& world, State& state, int w, const Scan& sensor
 
 void sense_all(const World& world, State& state, int w, Workspace& work, const std::vector<Scan>& sensors,
                std::size_t first, bool sweeping) {
+  const Data all = shown(world, state, w);
   for (std::size_t k = 0; k < sensors.size(); ++k) {
     const Scan& sensor = sensors[k];
     const int row = w * world.objects + sensor.mount.object;
-    const Data show = shown(world, state, w, sensor.mount, first + k);
+    const Data show = part_of(all, sensor.mount, first + k);
     if (sensor.times.each_step()) {
       measure(world, state, w, sensor, state.pose[row], state.heading(row), work, sweeping, show, 1);
     } else {
@@ -133,7 +144,8 @@ void sense_all(const World& world, State& state, int w, Workspace& work, const s
 
 void scan(const World& world, State& state, int w, int number, const Pose& pose, Vec2 direction, Workspace& work) {
   const Scan& sensor = world.scans[number];
-  measure(world, state, w, sensor, pose, direction, work, false, shown(world, state, w, sensor.mount, number), 1);
+  measure(world, state, w, sensor, pose, direction, work, false, part_of(shown(world, state, w), sensor.mount, number),
+          1);
 }
 
 void show_nothing(const World& world, State& state, int w) {
@@ -143,7 +155,7 @@ void show_nothing(const World& world, State& state, int w) {
       const Scan& sensor = (*sensors)[k];
       if (sensor.times.each_step()) continue;
       const Mount& mount = sensor.mount;
-      const Data show = shown(world, state, w, mount, first + k);
+      const Data show = part_of(shown(world, state, w), mount, first + k);
       std::fill_n(show.ranges, mount.reported(), sensor.farthest);
       std::fill_n(show.hits, mount.reported(), -1);
       std::fill_n(show.valid, mount.reported(), std::uint8_t{0});
@@ -167,8 +179,8 @@ void go_on_showing(const World& world, State& state, int object, const World& wo
       for (std::size_t j = 0; j < then.size(); ++j) {
         if (then[j].mount.object != object_before || !alike(now[k], then[j])) continue;
         const Mount& mount = now[k].mount;
-        copy(mount, shown(world_before, before, 0, then[j].mount, j + (beams ? 0 : world_before.scans.size())),
-             shown(world, state, 0, mount, k + (beams ? 0 : world.scans.size())));
+        copy(mount, part_of(shown(world_before, before, 0), then[j].mount, j + (beams ? 0 : world_before.scans.size())),
+             part_of(shown(world, state, 0), mount, k + (beams ? 0 : world.scans.size())));
         for (std::int64_t slot = 0; slot < now[k].times.slots; ++slot) {
           const auto at = static_cast<std::size_t>(slot);
           copy(mount, in_slot(world_before, before, 0, then[j], at), in_slot(world, state, 0, now[k], at));
@@ -182,7 +194,7 @@ const double* just_measured(const World& world, const State& state, int w, const
   const std::int64_t step = state.count[w];
   if (!sensor.times.due(step)) return nullptr;
   return sensor.times.delay > 0 ? on_the_way(world, state, w, sensor, step).ranges
-                                : shown(world, state, w, sensor.mount, 0).ranges;
+                                : part_of(shown(world, state, w), sensor.mount, 0).ranges;
 }
 
 void update_object_velocities(const World& world, const State& state, int w, Workspace& work) {

@@ -51,18 +51,24 @@ inline void travel_on(double* pose, const Travel& travel) {
   pose[2] = wrap(pose[2] + travel.turn);
 }
 
-/// Means over the steps since the last reading: the sums of three values, and the number of steps.
+/// Sums of three values over the steps since the last reading, and the number of steps: in the memory of a sensor.
 struct SinceReading {
   double* sums;
   static constexpr int kNumbers = 4;
 
   void start() const { std::fill_n(sums, kNumbers, 0.0); }
-  void add(const double (&values)[3]) const {
-    for (int k = 0; k < 3; ++k) sums[k] = sums[3] > 0.0 ? sums[k] + values[k] : values[k];
+  /// Add the values of a step. If it measures, they become the means since the last reading, whose number of steps is
+  /// returned, and the sums start anew; else 0 is returned.
+  double add(double (&values)[3], bool measures) const {
+    if (sums[3] == 0.0 && measures) return 1.0;
     sums[3] += 1.0;
+    for (int k = 0; k < 3; ++k) sums[k] += values[k];
+    if (!measures) return 0.0;
+    const double steps = sums[3];
+    for (int k = 0; k < 3; ++k) values[k] = sums[k] / steps;
+    start();
+    return steps;
   }
-  double mean(int k) const { return sums[k] / sums[3]; }
-  double steps() const { return sums[3]; }
 };
 
 /// An error that comes and goes: a Gauss-Markov process of the first order, exact for any step.

@@ -78,11 +78,11 @@ inline void odometry(const OdometryOptions& o, const Sensing& s) {
       {0.5 * (rolled[0] + rolled[1]), scale * travel.aside, (rolled[1] - rolled[0]) / o.track}, draw[0], draw[1]);
   travel_on(pose, believed);
   const double dt = s.world.step_time;
-  speeds.add({believed.ahead / dt, believed.aside / dt, believed.turn / dt});
+  double speed[] = {believed.ahead / dt, believed.aside / dt, believed.turn / dt};
+  speeds.add(speed, s.measures());
   if (!s.measures()) return;
   std::copy_n(pose, 3, s.readings);
-  for (int k = 0; k < 3; ++k) s.readings[3 + k] = speeds.mean(k);
-  speeds.start();
+  std::copy_n(speed, 3, s.readings + 3);
   for (int side = 0; side < 2; ++side) {
     s.readings[6 + side] = o.ticks_per_turn > 0 ? std::floor(turns[side] * o.ticks_per_turn) : turns[side];
   }

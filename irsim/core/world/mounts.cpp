@@ -89,6 +89,7 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
       mount.velocity_rows = velocity_rows(options), mount.offset = mounted_at(options);
       mount.readings = readings(options), mount.memory = memory(options);
     });
+    ++world.sensors_per_world;
     world.readings_per_world += mount.readings, world.memory_per_world += mount.memory;
     if (mount.readings > 0) {  // its rays are not reported, so they have no place among the beams of the world
       world.gauges.push_back({spec.sensors[k], mount, {}, lay_out(world, spec, k, mount), kInfinity});

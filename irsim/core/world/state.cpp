@@ -111,7 +111,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       valid(static_cast<std::size_t>(worlds) * world.beams_per_world),
       velocities(static_cast<std::size_t>(worlds) * world.velocities_per_world),
       readings(static_cast<std::size_t>(worlds) * world.readings_per_world),
-      stamp(worlds * world.sensors_per_world(), kNone),
+      stamp(worlds * world.sensors_per_world, kNone),
       explored(world.fog ? static_cast<std::size_t>(worlds) * world.fog->cells() : 0),
       count(worlds),
       scene_index(worlds),

@@ -236,8 +236,6 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
 
 World::~World() = default;
 
-std::size_t World::sensors_per_world() const { return scans.size() + gauges.size(); }
-
 void World::set_levels(std::vector<Level> given, const std::vector<std::vector<int>>& speeds) {
   if (speeds.size() != static_cast<std::size_t>(objects))
     throw std::invalid_argument("there must be one list of speeds for each object");

@@ -123,6 +123,7 @@ struct World {
   bool detects = false;                // whether one of them is a detector
   std::vector<Perception> perception;  // (N,) what objects go by; empty if all of them know the truth
   int beams_per_world = 0, velocities_per_world = 0, readings_per_world = 0, memory_per_world = 0;
+  std::size_t sensors_per_world = 0;  // first `scans`, then `gauges`
   std::size_t pending_times = 0, pending_beams = 0, pending_velocities = 0, pending_readings = 0;  // of each world
   std::size_t queue_slots = 0;  // commands that wait for their dead time, of all objects of a world
   std::optional<Fog> fog;
@@ -144,9 +145,6 @@ struct World {
   void set_levels(std::vector<Level> levels, const std::vector<std::vector<int>>& speeds);
   /// Set the variants that levels choose from.
   void set_variants(std::vector<std::shared_ptr<World>> variants);
-
-  /// Number of the sensors of a world: first `scans`, then `gauges`.
-  std::size_t sensors_per_world() const;
 
   /// Cell size of a grid that suits most of these objects [m].
   double cell(const Shapes& of, const std::vector<int>& ids) const;
