@@ -11,6 +11,8 @@ from typing import Any
 
 __all__ = ["offers"]
 
+_LISTS = ("overlays", "policies")
+"""Parameters that take several values, separated by commas."""
 _RECENT = 20
 """Number of runs that are offered."""
 
@@ -27,7 +29,7 @@ def offers(command: str, parameter: str) -> Callable[[Any, Any, str], list[str]]
         return None
 
     def complete(context: Any, _: Any, begun: str) -> list[str]:
-        first, comma, last = begun.rpartition(",") if parameter == "policies" else ("", "", begun)
+        first, comma, last = begun.rpartition(",") if parameter in _LISTS else ("", "", begun)
         return [first + comma + name for name in sorted(set(make(context))) if name.startswith(last)]
 
     return complete
@@ -36,6 +38,11 @@ def offers(command: str, parameter: str) -> Callable[[Any, Any, str], list[str]]
 def _found(module: str, name: str) -> Any:
     """A name of a module that only this completion needs."""
     return getattr(import_module(module), name)
+
+
+def _overlays(_: Any) -> Iterable[str]:
+    names: Iterable[str] = _found("irsim.api.overlays", "OVERLAYS")
+    return names
 
 
 def _policies(_: Any) -> Iterable[str]:
@@ -104,5 +111,6 @@ _OFFERS: dict[str, Callable[[Any], Iterable[str]]] = {
     "before": _runs,
     "after": _runs,
     "render file": _runs,
+    "render overlays": _overlays,
 }
 """A parameter, or a command and its parameter -> the function that lists its values."""

@@ -77,7 +77,8 @@ def render(
     In headless mode nothing is drawn.
 
     Args:
-        interval: Time for which a window shows the frame [s].
+        interval: Time of the clock for which a window or a cell of a notebook shows the frame before the program goes
+            on [s]; ``env.step_time`` is about as fast as the simulated time. Without either, nothing waits.
         figure_kwargs: Options of the frame that is kept for the animation.
         mode: Which objects the plot options below apply to: ``dynamic``, ``static`` or ``all``.
         **kwargs: Plot options of objects that hold for this frame only.
@@ -201,7 +202,7 @@ def finish_drawing(env: EnvState, ending_time: float, **kwargs: Any) -> None:
     if env.save_ani:
         env_plot(env).save_animation(**{**env.ani_kwargs, **kwargs})
     if env._plot is not None:
-        if env.display and env._plot.made:
+        if env.display and env._plot.made and not env._plot.show_in_cell():  # a notebook keeps its picture anyway
             env._plot.pause(ending_time)
         env._plot.close()
         env._plot = None

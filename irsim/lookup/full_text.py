@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Container, Iterable, Sequence
 from typing import NamedTuple
 
-__all__ = ["Document", "best", "bm25", "has_all", "telling_words", "words_of"]
+__all__ = ["STOP_WORDS", "Document", "best", "bm25", "has_all", "telling_words", "words_of"]
 
 MAX_RESULTS = 5
 """Largest number of documents in a result."""
@@ -26,15 +26,22 @@ _LENGTH_WEIGHT = 0.75
 """Parameter b of Okapi BM25."""
 MIN_PLURAL_LETTERS = 4
 """Shorter words keep a final s."""
-_STOP_WORDS = frozenset(
-    {
+
+
+def _singular(word: str) -> str:
+    return word[:-1] if len(word) >= MIN_PLURAL_LETTERS and word.endswith("s") and not word.endswith("ss") else word
+
+
+STOP_WORDS = frozenset(
+    _singular(word)
+    for word in (
         "a", "about", "an", "and", "any", "are", "as", "at", "be", "by", "can", "cannot", "do", "does", "for", "from",
         "get", "has", "have", "how", "i", "if", "in", "into", "is", "it", "its", "make", "me", "my", "no", "not", "of",
         "on", "or", "should", "so", "something", "than", "that", "the", "their", "them", "there", "this", "to", "use",
         "using", "want", "what", "when", "where", "which", "who", "why", "will", "with", "without",
-    }
+    )
 )  # fmt: skip
-"""Words of a query that are ignored, because they do not identify a topic."""
+"""Words of a query that are ignored, because they do not identify a topic, as :func:`words_of` returns them."""
 
 
 class Document(NamedTuple):
@@ -96,7 +103,7 @@ def has_all(document: Document, query: str) -> bool:
 
 def telling_words(query: str) -> list[str]:
     """Return the words of a query that identify a topic, or all of them if none does."""
-    meaningful = list(dict.fromkeys(words_of(query, _STOP_WORDS)))
+    meaningful = list(dict.fromkeys(words_of(query, STOP_WORDS)))
     return meaningful or words_of(query)
 
 
@@ -114,10 +121,7 @@ def words_of(text: str, stop_words: Container[str] = ()) -> list[str]:
         text: The text.
         stop_words: Words that are left out.
     """
-    words = (
-        word[:-1] if len(word) >= MIN_PLURAL_LETTERS and word.endswith("s") and not word.endswith("ss") else word
-        for word in re.findall(r"[^\W_]+(?:'[^\W_]+)*", text.lower())
-    )
+    words = map(_singular, re.findall(r"[^\W_]+(?:'[^\W_]+)*", text.lower()))
     return [word for word in words if word not in stop_words]
 
 

@@ -185,6 +185,20 @@ GUIDES: dict[str, Guide] = {
         "irsim benchmark crowdnav_circle_v2 --seeds 20 --out results   # results/results.md ends with the line",
         ("citation", "citing", "how to cite", "bibtex", "cite this run"),
     ),
+    "interrupted": Guide(
+        "Ctrl-C, and how an interrupted command goes on",
+        "Ctrl-C ends a command with exit code 130 and one line that names the command to go on with. `irsim benchmark "
+        "--resume` goes on with the last benchmark below the current folder, or with that of -o FOLDER: finished "
+        "episodes are kept, and the result equals that of an undisturbed run. `irsim train --resume -o FOLDER` goes on "
+        "after the last finished round; with more --decisions also where a training was finished. A run starts again: "
+        "the same file and seed give the same run.",
+        "irsim benchmark --resume",
+        (
+            *("interrupt", "interruption", "ctrl-c", "ctrl+c", "ctrl c", "ctrl", "keyboardinterrupt", "resume"),
+            *("--resume", "resume a benchmark", "resume a training", "continue", "go on", "carry on", "abort", "130"),
+            *("continue a benchmark", "continue a training", "exit code 130"),
+        ),
+    ),
     "perturb": Guide(
         "starts that differ a little with each seed",
         "Does it still work when things start slightly differently? An option of `irsim run` and `irsim benchmark` "

@@ -91,12 +91,13 @@ PYTHON: dict[str, Guide] = {
     "notebooks": Guide(
         "Jupyter: env, results and replays show themselves",
         "In a notebook the last value of a cell shows itself: environments, batches, vector environments, results and "
-        "policies. env.render() in a loop updates one picture below its cell. env.replay() shows the present episode "
-        "and irsim.run(…).replay() a run on the replay page, inside the cell; .save('replay.html') writes the page. "
+        "policies (irsim.open_policy('orca')). env.render(0.1) in a loop updates one picture below its cell and shows "
+        "each for 0.1 s. env.replay() shows the present episode and irsim.run(…).replay() a run on the replay page, "
+        "inside the cell; .save('replay.html') writes the page. "
         "irsim.run(…).to_pandas() is a table with a row per step and object, irsim.benchmark(…).to_pandas() one with a "
         "row per episode; pip install pandas. Files of save_ani and save_figure go to the working directory.",
         "import irsim\n\nenv = irsim.make('scenario.yaml', seed=1)\nfor _ in range(100):\n    env.step()\n"
-        "    env.render()\nenv.replay()",
+        "    env.render(0.1)\nenv.replay()",
         (
             *("notebook", "jupyter", "colab", "ipython", "vs code", "marimo", "env.replay", "to_pandas", "pandas"),
             *("dataframe", "data frame", "_repr_html_"),

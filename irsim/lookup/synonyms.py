@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from irsim.lookup.full_text import words_of
+from irsim.lookup.full_text import STOP_WORDS, words_of
 from irsim.lookup.units import UNIT_WORDS
 
 __all__ = ["EVERYDAY", "named"]
@@ -179,21 +179,24 @@ def named(query: str) -> list[str]:
     """Return the topics whose everyday names occur in a query; longer names come first.
 
     A name counts at any position: ``360 degree lidar`` names the lidars. It does not count inside a longer name that
-    also occurs, such as ``drive`` in ``differential drive``.
+    also occurs, such as ``drive`` in ``differential drive``. Words that tell nothing may stand between the words of a
+    name: a ``crowd that does not freeze`` has the name ``crowd freezes``.
     """
     words = words_of(query.replace("*", " star"))
-    matches: list[tuple[int, int, str]] = []  # (words, first word, topic)
+    telling = [k for k, word in enumerate(words) if word not in STOP_WORDS]
+    matches: list[tuple[int, int, int, str]] = []  # (words, first word, last word, topic)
     for topic, names in EVERYDAY.items():
         spans = [
-            (len(name), start, topic)
+            (len(name), places[start], places[start + len(name) - 1], topic)
             for name in map(words_of, names.split(", "))
-            for start in range(len(words) - len(name) + 1)
-            if words[start : start + len(name)] == name
+            for places in (range(len(words)), telling)
+            for start in range(len(places) - len(name) + 1)
+            if [words[k] for k in places[start : start + len(name)]] == name
         ]
         matches += sorted(spans, reverse=True)[:1]
     whole = [
-        (count, start, topic)
-        for count, start, topic in matches
-        if not any(other[0] > count and other[1] <= start < start + count <= other[1] + other[0] for other in matches)
+        (count, topic)
+        for count, start, end, topic in matches
+        if not any(other[0] > count and other[1] <= start <= end <= other[2] for other in matches)
     ]
-    return [topic for _, _, topic in sorted(whole, key=lambda span: -span[0])]
+    return [topic for _, topic in sorted(whole, key=lambda span: -span[0])]

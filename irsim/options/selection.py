@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, get_origin
 
@@ -10,11 +10,12 @@ from pydantic import BaseModel, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
+from irsim.common.lazy import call_home
 from irsim.diagnostics.diagnostic import is_slip_of, nearest
 from irsim.options.base import SCHEMA_PARTS, open_options, problem, problems_at, shared_schema
 from irsim.options.registry import CustomBehaviors, Registry
 
-__all__ = ["Choices", "Select"]
+__all__ = ["Choices", "Select", "component_meant", "page_about"]
 
 _NAME_WORDS = ("type", "kind")
 """Common wrong names of the key ``name``."""
@@ -50,6 +51,18 @@ class Choices:
     def get(self, name: str) -> Choice | None:
         """The choice of that name."""
         return Choice(name, self.models[name]) if name in self.models else None
+
+
+def component_meant(word: Any, names: Sequence[str]) -> str | None:
+    """The component that has an everyday name, such as ``diff`` for ``unicycle``; None if there is none."""
+    found: str | None = call_home("irsim.lookup.meant:component_meant", str(word), names)
+    return found
+
+
+def page_about(word: Any) -> str | None:
+    """Where to read what takes the place of a thing that the language lacks, such as a camera; None if nowhere."""
+    page: str | None = call_home("irsim.lookup.meant:page_about", str(word))
+    return None if page is None else f"see: irsim describe {page}"
 
 
 class Select:
@@ -180,14 +193,14 @@ class Select:
         """The error for a word instead of a mapping; its fix uses the most similar name."""
         kind, names = self.registry.kind, self.names()
         known = word in names or self.name_of({"name": word}) in names
-        near = word if known else nearest(word, names)
+        near = word if known else component_meant(word, names) or nearest(word, names)
         message = f"'{kind}' must be a mapping with a name, not the name alone"
         field = None if self.fallback is None else self.fallback.model_fields.get(word)
         if near is None and field is not None and field.default is False:
             fix = f"write {{name: <{kind}>, {word}: true}}: '{word}' is a key of every {kind}"
             return problem("not-a-mapping", message, allowed=names, fix=fix)
         if near is None and self.fallback is None:
-            return problem("not-a-mapping", message, allowed=names, fix=f"write {{name: <{kind}>}}")
+            return problem("not-a-mapping", message, allowed=names, fix=page_about(word) or f"write {{name: <{kind}>}}")
         meant = near or word
         sure = known or near is None or is_slip_of(word, meant)
         return problem(
@@ -197,7 +210,8 @@ class Select:
     def _unknown(self, name: Any, *, alone: bool) -> PydanticCustomError:
         """The error for an unknown name; ``alone`` if the name is given instead of a mapping."""
         names, kind = self.names(), self.registry.kind
-        near = nearest(name, names)
+        near = component_meant(name, names) or nearest(name, names)
+        page = None if near else page_about(name)
         message = f"'{name}' is not {'one of the kinematics' if kind == 'kinematics' else f'a {kind}'}"
         if not self._is_accepted(name):
             message = f"'{name}' is a {kind}, but it cannot be used here"
@@ -205,7 +219,7 @@ class Select:
             f"unknown-{kind}",
             message,
             allowed=names,
-            fix=(f"write {near}" if alone else f"name: {near}") if near else None,
+            fix=(f"write {near}" if alone else f"name: {near}") if near else page,
             replace=near,
         )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -277,10 +278,15 @@ class EnvPlot(PlotFormat):
             hint = f": did you mean {near!r}?" if near else ""
             self.env.logger.warning(f"render: {key!r} is not a plot option and is ignored{hint}")
 
-    def show_in_cell(self) -> bool:
-        """Show the picture below the present cell of a notebook; False where figures do not appear in cells."""
+    def show_in_cell(self, seconds: float = 0.0) -> bool:
+        """Show the picture below the present cell of a notebook; False where figures do not appear in cells.
+
+        Args:
+            seconds: Time to wait then, so that a loop does not replace the picture before anyone has seen it.
+        """
         if self._cell is not None:
             self._cell.show(png_bytes(self._saving.pixels()[0], self._dpi))
+            time.sleep(max(seconds, 0.0))
         return self._cell is not None
 
     def frame(self) -> Image.Image:

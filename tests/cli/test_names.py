@@ -192,6 +192,7 @@ def completed(line: str, folder: Path) -> list[str]:
         ("irsim diff-runs last-", "last-1"),
         ("irsim replay roo", "room-"),
         ("irsim bridge page scene.ply --run las", "last"),
+        ("irsim render room.yaml --overlays names,clear", "names,clearance"),
     ],
 )
 def test_the_tab_key_completes_values(line: str, offered: str, irsim: Run, room: Path, tmp_path: Path) -> None:

@@ -49,7 +49,11 @@ def test_prints_to_standard_output(irsim: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "code", "help_text"),
     [
-        (["empty-rom"], "unknown-template", "empty-room"),
+        (
+            ["empty-rom"],
+            "unknown-template",
+            "there is no template 'empty-rom'. Fix: did you mean empty-room? irsim templates",
+        ),
         (["empty-room", "--set", "widht=3"], "unknown-parameter", "width"),
         (["empty-room", "--set", "width=1"], "bad-parameter", "from 4 to 200 m"),
         (["empty-room", "--set", "width"], "bad-parameter", "KEY=VALUE"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from pathlib import Path
 from types import ModuleType
 
@@ -12,6 +13,7 @@ import pytest
 import irsim
 from irsim.common.installed import script_folder
 from irsim.diagnostics.errors import InputError
+from irsim.rendering import env_plot
 from irsim.runs.replay.inline import replay_of_env
 from tests.env.driving import Make, take_steps
 
@@ -43,6 +45,27 @@ def test_an_environment_shows_the_present_state(make: Make) -> None:
     assert "2 s" in after
     assert before.count("data:image/png;base64,") == after.count("data:image/png;base64,") == 1
     assert before != after
+
+
+def test_a_cell_shows_each_frame_for_the_interval(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    happened: list[str | float] = []
+
+    class Below:
+        """The place below a cell."""
+
+        def show(self, png: bytes) -> None:
+            happened.append(png[1:4].decode())
+
+    monkeypatch.setattr(env_plot, "draws_inline", lambda: True)
+    monkeypatch.setattr(env_plot, "Cell", Below)
+    monkeypatch.setattr(time, "sleep", happened.append)
+    env = make(TEXT, display=True, headless=False)
+    for _ in range(2):
+        env.step()
+        env.render(0.25)
+    assert happened == ["PNG", 0.25, "PNG", 0.25]
+    env.end(ending_time=30)
+    assert 30 not in happened  # the picture stays without waiting
 
 
 def test_a_batch_and_a_policy_show_themselves(tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ from irsim.scenario.yaml.formatting import flow, number, quote_value
 
 BAD = sorted(Path(__file__).with_name("bad").glob("*.yaml"))
 PACKAGE = Path(irsim.__file__).parent
+BESIDE = "it belongs beside 'behavior': vel_max: {}, one number per control of the drive"
 HEADING = "see arrive_mode: state: the heading counts, and goal_threshold holds for metres and radians together"
 
 
@@ -35,7 +36,8 @@ def first(text: str) -> Diagnostic:
         ("kinematics: omni_angle", "write {name: omni_angular}", {"name": "omni_angular"}),
         ("kinematics: ofmi", "write {name: omni}", {"name": "omni"}),
         ("kinematics: ack", "write {name: acker}", {"name": "acker"}),
-        ("kinematics: tank", "write {name: <kinematics>}", None),
+        ("kinematics: tank", "write {name: skid_steer}", None),
+        ("kinematics: sled", "write {name: <kinematics>}", None),
         ("kinematics: diff, behavior: rov", "write {name: rvo}", None),
         ("kinematics: {name: diff}, behavior: mine", "write {name: mine}", {"name": "mine"}),
         ("kinematics: {name: diff}, behavior: wander", "write {name: <behavior>, wander: true}", None),
@@ -193,6 +195,16 @@ def test_lenient_does_what_2_12_does(data: dict[str, Any], check: Any) -> None:
         ("robot: {sensors: [{range: 5}]}\n", "rename it to 'range_max'"),
         ("robot: {sensors: [{name: fmcw_lidar2d, beams: 5}]}\n", "rename it to 'number'"),
         ("robot: {max_speed: [1, 1]}\n", "rename it to 'vel_max'"),
+        ("robot: {kinematics: {name: differential}}\n", "name: diff"),
+        ("robot: {kinematics: {name: bicycle}}\n", "name: acker"),
+        ("robot: {sensors: [{name: gps}]}\n", "name: gnss"),
+        ("robot: {sensors: [{name: camera}]}\n", "see: irsim describe camera"),
+        ("robot: {sensors: [webcam]}\n", "see: irsim describe camera"),
+        ("robot: {kinematics: {name: quadruped}}\n", "see: irsim describe legged"),
+        ("robot: {kinematics: {name: diff}, behavior: {name: pedestrian}}\n", "name: sfm"),
+        ("robot: {kinematics: {name: diff}, behavior: {name: dash, max_speed: 2}}\n", BESIDE.format("[2, ...]")),
+        ("robot: {kinematics: {name: diff}, behavior: {name: dash, vel_max: [2, 1]}}\n", BESIDE.format("[2, 1]")),
+        ("robot: {kinematics: {name: diff}, behavior: {name: sfm, max_speed: 2}}\n", "rename it to 'vmax'"),
     ],
 )  # fmt: skip
 def test_words_that_say_it_in_another_way(text: str, fix: str) -> None:

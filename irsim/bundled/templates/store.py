@@ -197,12 +197,10 @@ def load(name: str) -> Template:
     """
     known = names()
     if name not in known:
-        raise TemplateError(
-            "unknown-template",
-            f"there is no template {name!r}; choose one of {', '.join(known)}.",
-            suggestion(name, known, None),
-            allowed=known,
-        )
+        message, near = f"there is no template {name!r}", suggestion(name, known, None)
+        fix = None if near is None else f"{near} irsim templates lists all {len(known)}"
+        every = f"; choose one of {', '.join(known)}." if near is None else ""
+        raise TemplateError("unknown-template", f"{message}{every}", fix, allowed=known)
     return _read(name)
 
 

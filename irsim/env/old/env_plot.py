@@ -177,8 +177,8 @@ class EnvPlot(env_plot.EnvPlot):
 
     # the window ------------------------------------------------------------------------------------------------------
     def pause(self, interval: float) -> None:
-        """Show the present state in the window for ``interval`` seconds; without a window return at once."""
-        if not self._display or self.show_in_cell():
+        """Show the present state in the window or notebook for ``interval`` seconds; without one return at once."""
+        if not self._display or self.show_in_cell(interval):
             return
         if self._figure is None:
             if not window.has_screen():

@@ -9,6 +9,7 @@ from typing import Any
 from irsim.components.options import BehaviorOptions, CustomOptions
 from irsim.diagnostics.diagnostic import Edit, is_slip_of, nearest
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
+from irsim.options.selection import component_meant
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.lookup import at
@@ -104,7 +105,7 @@ def _unknown_name(context: Context, record: ObjectRecord, key: str, table: Custo
             tolerated=True,
         )
         return
-    near = nearest(options.name, known)
+    near = component_meant(options.name, known) or nearest(options.name, known)
     fix = f"name: {near}" if near else _OWN
     edit = Edit("replace", path, near, safe=is_slip_of(options.name, near)) if near else None
     if options.name in ("wander", "loop"):

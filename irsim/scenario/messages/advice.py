@@ -27,17 +27,28 @@ _HEADING_TOLERANCES = tuple(
 _SIDES = ("size", "dimensions", "extent")
 
 
-def advice_on_key(path: Path, data: Any) -> tuple[str | None, str | None]:
+_SPEEDS = ("speed", "max_speed", "speed_max", "maxspeed", "vmax", "v_max", "vel_max", "max_vel", "max_velocity")
+_OWN_SPEEDS = ("maxSpeed", "vmax")
+"""Keys of the behaviors that have a limit of their own."""
+
+
+def advice_on_key(path: Path, data: Any, allowed: Sequence[str]) -> tuple[str | None, str | None]:
     """Advice in words on an unknown key, and the key to rename it to if that may be what was meant.
 
     Args:
         path: Path of the unknown key.
         data: The whole document.
+        allowed: Keys that it may have.
     """
     key, parent, value = str(path[-1]).lower(), at(data, path[:-1]), at(data, path)
     if not isinstance(parent, Mapping):
         return None, None
     where = key_path(path[:-1])
+    if where in ("entry.behavior", "entry.group_behavior") and key in _SPEEDS:
+        if (own := next((name for name in _OWN_SPEEDS if name in allowed), None)) is not None:
+            return (None, None) if own in parent else (f"rename it to '{own}'", own)
+        limits = flow(value) if is_vector(value) else f"[{_text(value)}, ...]"
+        return f"it belongs beside 'behavior': vel_max: {limits}, one number per control of the drive", None
     if where == "world":
         return (_sides(value, "width", "height"), None) if key in _SIDES else (None, None)
     if where == "entry":

@@ -139,7 +139,7 @@ class Explainer:
         title = self.root.model_config.get("title") or self.root.__name__
         where = f"'{format_path(parent)}'" if parent else f"a {title.lower()}"
         written = at(self.data, parent)
-        other, like = (None, None) if meant else advice_on_key(self.path, self.data)
+        other, like = (None, None) if meant else advice_on_key(self.path, self.data, allowed)
         edit, fix = None, other
         if (meant_number := self._after_comma(key, written)) is not None:
             fix = f"a decimal comma? write {meant_number}"
