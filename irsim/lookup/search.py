@@ -72,6 +72,9 @@ def search_answer(schema: Node, topic: str, words: list[str], explain: Callable[
         names, unknown = full_text.best(documents + metrics, query)
     called = named(topic)
     unknown = [word for word in unknown if not any(word in full_text.words_of(EVERYDAY[name]) for name in called)]
+    of_bridges = [] if called else [_hit(path, node) for path, node in paths(schema) if path[-1].lower() == wanted]
+    if of_bridges:
+        return explain(of_bridges[0].name) if len(of_bridges) == 1 else _namesakes_answer(clean(wanted), of_bridges)
     if not (called or names) or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _MIN_LIKENESS)):
         raise TopicError(topic, near_topics(topics, words))
     lines |= {name: _line_of(schema, name) for name in called}

@@ -207,7 +207,7 @@ def test_every_kind_of_topic_that_is_offered_is_answered() -> None:
     assert offer is not None
     offered = offer(None, None, "")
     assert len(offered) > 1000
-    for topic in random.Random(1).sample(offered, 40):
+    for topic in ["storage", "host", *random.Random(1).sample(offered, 40)]:
         assert (topic, lookup(topic).read_as) == (topic, None)
 
 
