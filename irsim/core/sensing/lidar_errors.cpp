@@ -191,7 +191,8 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
   NormalDraws normal(s.draws());
   UniformDraws choice(s.draws(1));
   const Draws details = s.draws(2), episode = s.draws(3);
-  const double scale = 1.0 + errors.scale_std * episode.normal(0), bias = errors.bias_std * episode.normal(1);
+  const double scale = 1.0 + s.noise() * errors.scale_std * episode.normal(0);
+  const double bias = s.noise() * errors.bias_std * episode.normal(1);
   const double least_cosine = steep ? std::cos(errors.incidence_max) : 0.0;
   const double shorts = errors.dropout + errors.short_share, randoms = shorts + errors.random_share;
   const bool chance = dim || randoms > 0.0;

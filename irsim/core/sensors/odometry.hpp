@@ -57,9 +57,10 @@ inline void odometry(const OdometryOptions& o, const Sensing& s) {
     return;
   }
   const Draws episode = s.draws(1);
-  const double unequal = 1.0 + o.diameter_error + o.diameter_std * episode.normal(0);
-  const double track = o.track * (1.0 + o.track_error + o.track_std * episode.normal(1));
-  const double scale = 1.0 + o.scale_error + o.scale_std * episode.normal(2);
+  const double factor = s.noise();
+  const double unequal = 1.0 + o.diameter_error + factor * o.diameter_std * episode.normal(0);
+  const double track = o.track * (1.0 + o.track_error + factor * o.track_std * episode.normal(1));
+  const double scale = 1.0 + o.scale_error + factor * o.scale_std * episode.normal(2);
   const double radius[] = {2.0 * scale * o.wheel_radius / (1.0 + unequal),
                            2.0 * unequal * scale * o.wheel_radius / (1.0 + unequal)};
   double rolled[2];  // as believed [m]
@@ -72,8 +73,7 @@ inline void odometry(const OdometryOptions& o, const Sensing& s) {
                              : (turns[side] - before) * per_turn;
   }
   const auto draw = s.draws().normals(s.scan_number());
-  const double s_noise = s.noise();
-  const Drift drift{s_noise * o.distance_noise, s_noise * o.heading_noise, s_noise * o.turning_noise};
+  const Drift drift{factor * o.distance_noise, factor * o.heading_noise, factor * o.turning_noise};
   const Travel believed = drift.add(
       {0.5 * (rolled[0] + rolled[1]), scale * travel.aside, (rolled[1] - rolled[0]) / o.track}, draw[0], draw[1]);
   travel_on(pose, believed);

@@ -24,6 +24,8 @@ from irsim.simulation.roles import HUMAN, kinds_of
 __all__ = ["LevelDraws", "drawn_values", "level_draws", "randomize_path"]
 
 _ENTRY = re.compile(r"^(robot|obstacle)\[(\d+)\]$")
+_SPREAD = re.compile(r"(^|_)(std|noise)(_|$)|^depth_growth$")
+"""Keys of sensors that are standard deviations, or what these grow by."""
 _DIGITS = 6
 """Decimals of a drawn parameter, as a template writes numbers."""
 Where = tuple[str | int, ...]
@@ -170,7 +172,7 @@ def _check(
         raise task_error(where, what, "give these objects `acce` in the scenario")
     if quantity == "sensor_noise" and not any(_is_noisy(sensor) for r in records for sensor in r.sensors):
         what = f"no sensor of {clean(word)!r} is noisy"
-        raise task_error(where, what, "give a sensor `noise: true` and a `std` in the scenario")
+        raise task_error(where, what, "give a sensor an error in the scenario, such as `noise: true` and a `std`")
     if quantity in ("delay", "lag"):
         longest = [max(_times(record, quantity), default=0.0) for record in records]
         if not all(longest):
@@ -189,8 +191,11 @@ def _times(record: ObjectRecord, key: str) -> list[float]:
 
 
 def _is_noisy(sensor: Any) -> bool:
-    noisy = bool(getattr(sensor, "noise", False)) and (sensor.std > 0 or sensor.angle_std > 0)
-    return noisy or getattr(sensor, "velocity_noise_std", 0) > 0
+    """Whether a key of a sensor, or of its ``realism``, is the standard deviation of an error, and not 0."""
+    keys = {**dict(getattr(sensor, "realism", None) or ()), **dict(sensor)}
+    if not keys.get("noise", True):  # of a lidar: without it these two have no effect
+        keys["std"] = keys["angle_std"] = 0.0
+    return any(value for key, value in keys.items() if _SPREAD.search(key) and isinstance(value, float))
 
 
 def _check_learners(drawn: Sequence[DrawnQuantity], where: Where, selection: _Selection) -> None:
