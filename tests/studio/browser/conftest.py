@@ -52,10 +52,10 @@ class Watched:
         until(self.page, "document.getElementById('robot').options.length > 0")
 
     def finish(self) -> RunResult:
-        """Wait until the page shows how the run ended."""
+        """Wait until the page says how the run ends."""
         self._thread.join(60)
         assert self.result is not None
-        until(self.page, f"document.getElementById('outcome').textContent === '{self.result.outcome}'")
+        until(self.page, f"document.getElementById('outcome').textContent.endsWith('{self.result.outcome}')")
         return self.result
 
 

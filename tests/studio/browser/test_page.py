@@ -73,6 +73,26 @@ def test_the_run_grows_while_one_looks_at_what_was(start: Start) -> None:
     assert time_of(page) == 1
 
 
+def test_the_outcome_is_what_comes_until_its_end_is_shown(start: Start) -> None:
+    watched = start(scene(), speed=0.1)
+    result, page = watched.finish(), watched.page
+    page.keyboard.press("Space")
+    page.keyboard.press("Home")
+    settled(page)
+    assert page.inner_text("#outcome") == "ends with: collision"
+    assert page.get_attribute("#outcome", "class") == "badge ", "without the colour of the outcome"
+    assert page.inner_text("#facts").startswith(f"simulated until {result.steps * 0.1:.2f} s, its end · 3 robots")
+    colour = "getComputedStyle(document.querySelector('#events button:not([aria-current]) span')).color"
+    to_come = page.evaluate(colour)
+    page.keyboard.press("End")
+    settled(page)
+    assert page.inner_text("#outcome") == "collision"
+    assert page.evaluate(colour) != to_come, "events that are still to come are pale"
+    page.keyboard.press("Home")
+    settled(page)
+    assert page.inner_text("#outcome") == "collision", "it stays known"
+
+
 def test_pause_and_scrubbing_leave_the_simulation_alone(start: Start) -> None:
     watched = start(scene(), slowly, steps=150)
     page = watched.page
@@ -141,7 +161,7 @@ def test_a_second_page_and_one_that_comes_late_show_all(start: Start) -> None:
     late = page.context.new_page()
     late.goto(page.url)
     until(late, f"document.getElementById('time').max == {result.steps}")
-    assert late.inner_text("#outcome") == "collision"
+    until(late, "document.getElementById('outcome').textContent.endsWith('collision')")
 
 
 def test_it_says_that_a_run_was_interrupted_and_keeps_it(start: Start) -> None:

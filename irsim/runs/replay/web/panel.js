@@ -24,11 +24,8 @@ export function fillPanel(player, goToEvent) {
 
 /** How the run ended, what its record lacks, and its events. */
 export function showRun(player) {
-  const { run } = player, { head } = run, badge = $("outcome");
-  badge.hidden = false;
-  badge.textContent = head.outcome ?? head.status;
-  badge.className = `badge ${head.outcome ?? ""}`;
-  sayFacts(run);
+  const { run } = player, { head } = run;
+  sayOutcome(run);
   const lacks = (head.notes ?? []).join("; "), left = Object.entries(head.left_out ?? {});
   note($("recordnote"), lacks && `This run: ${lacks}.`);
   note($("leftout"), left.length ? `Not listed, evenly over time: ${left.map(([kind, count]) => `${count} ${manyWords(kind)}`).join(", ")}.` : "");
@@ -103,13 +100,23 @@ function eventButton({ run, goToEvent }, event) {
   return button;
 }
 
+/** The outcome; of a simulation that ran ahead it is what comes, until its end has been shown. */
+function sayOutcome(run) {
+  const { outcome, status } = run.head, badge = $("outcome"), comes = outcome && !run.endShown;
+  badge.hidden = false;
+  badge.textContent = comes ? `ends with: ${outcome}` : outcome ?? status;
+  badge.className = `badge ${comes ? "" : outcome ?? ""}`;
+  sayFacts(run);
+}
+
 function sayFacts(run) {
   $("facts").textContent = $("facts").title = factsOf(run);
   offerMore();
 }
 
-function factsOf({ head, robots, growing, time, rows }) {
-  const far = growing && `simulated until ${seconds(time[rows - 1])} of at most ${seconds(head.horizon * head.step_time)}`;
+function factsOf({ head, robots, growing, endShown, time, rows }) {
+  const until = `simulated until ${seconds(time[rows - 1])}`, most = seconds(head.horizon * head.step_time);
+  const far = growing ? `${until} of at most ${most}` : !endShown && head.outcome && `${until}, its end`;
   const facts = [far || head.reason || head.summary, `${robots.length} robot${robots.length === 1 ? "" : "s"}`, `seed ${head.seed}`];
   if (head.every > 1) facts.push(`one in ${head.every} steps is shown`);
   return facts.filter(Boolean).join(" · ");
@@ -126,6 +133,10 @@ export function showMoment(player) {
   clock.lastChild.textContent = ` / ${seconds(run.time[run.rows - 1])} · step ${step}`;
   setTerms($("values"), shown.robot >= 0 ? valuesOf(run, shown.robot, shown.at) : []);
   markCurrent(player, shown.at + 1e-6);
+  if (!run.endShown && !run.growing && row >= run.rows - 1) {
+    run.endShown = true;
+    sayOutcome(run);
+  }
 }
 
 /** The last event so far is marked in the list, and brought into view when it changes. */
@@ -134,6 +145,7 @@ function markCurrent(player, at) {
   const off = place - player.listedFrom, beyond = (off < 0 && player.listedFrom > 0) || off >= LISTED;
   if (beyond) listEvents(player, Math.max(0, Math.min(events.length - LISTED, place - LISTED / 2)));
   const button = player.listed[place - player.listedFrom] ?? null;
+  $("events").classList.toggle("begins", place < 0);
   if (button === player.current) return;
   player.current?.removeAttribute("aria-current");
   player.current = button;
@@ -164,6 +176,8 @@ export function showChoices({ run, shown }) {
   $("belief").hidden = !hasBeliefs(run);
   const lidars = run.lidars.get(shown.robot) ?? [], told = $("scannote");
   $("lidar").disabled = !lidars.length;
+  $("follow").title = shown.robot < 0 ? "Choose a robot to follow" : "Keep the robot in the middle (F)";
+  $("lidar").title = lidars.length ? "Its scan (L)" : shown.robot < 0 ? "Choose a robot with a lidar" : "It has no lidar";
   told.hidden = !(shown.lidar && lidars.length);
   told.textContent = lidars.every(({ ranges }) => ranges)
     ? "Lidar: ranges as recorded in the run."

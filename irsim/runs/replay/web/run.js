@@ -11,6 +11,7 @@ export function makeRun({ head, columns }) {
   const run = {
     head,
     growing: Boolean(head.growing),
+    endShown: !head.growing,
     rows: columns.step.length,
     stride: columns.step.length, // from one track to the next
     time: Float64Array.from(columns.step, (step) => step * head.step_time),

@@ -272,6 +272,7 @@ def test_the_page_says_where_scans_come_from(
     page.select_option("#robot", label="lorry")
     assert not page.locator("#scannote").is_visible()
     assert page.locator("#lidar").is_disabled()
+    assert page.get_attribute("#lidar", "title") == "It has no lidar"
 
 
 def test_computed_scans_are_like_recorded_ones(run: Run, watched: Watched, monkeypatch: pytest.MonkeyPatch) -> None:
