@@ -140,7 +140,7 @@ GUIDES: dict[str, Guide] = {
         "path length, mean speed and smallest clearance. It says equal, or names object, step, both values and the "
         "tolerance; contacts within 1e-7 m of touching are listed, not decided. The record has what that needs: "
         "outlines as drawn, limits, goals, thresholds, the cells of the map, contacts with their times. A submission "
-        "(`irsim benchmark SUITE --submission DIR` writes one for others) is checked by `irsim audit DIR`: files, "
+        "(`irsim benchmark SUITE --submission DIR` writes one to hand in) is checked by `irsim audit DIR`: files, "
         "scenes, rows, tables and records; --replay 60 also runs 60 of its episodes again. More: guides/audit.md of "
         "the skill irsim-benchmark.",
         "irsim run hall.yaml --seed 3 --record && irsim audit last",
@@ -188,8 +188,8 @@ GUIDES: dict[str, Guide] = {
     "interrupted": Guide(
         "Ctrl-C, and how an interrupted command goes on",
         "Ctrl-C ends a command with exit code 130 and one line that names the command to go on with. `irsim benchmark "
-        "--resume` goes on with the last benchmark below the current folder, or with that of -o FOLDER: finished "
-        "episodes are kept, and the result equals that of an undisturbed run. `irsim train --resume -o FOLDER` goes on "
+        "--resume` goes on with the last benchmark below the current folder, or with the one of -o FOLDER: finished "
+        "episodes are kept, and the result equals an undisturbed one. `irsim train --resume -o FOLDER` goes on "
         "after the last finished round; with more --decisions also where a training was finished. A run starts again: "
         "the same file and seed give the same run.",
         "irsim benchmark --resume",

@@ -1,4 +1,4 @@
-"""What a word means that is no name of the language: a component by its everyday name, or a page about a thing."""
+"""Meanings of words that are not names of the language: components by everyday names, and pages about things."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["component_meant", "page_about"]
 
 
 def component_meant(word: str, names: Sequence[str]) -> str | None:
-    """The component with an everyday name, of several the one that is listed first; None if there is none.
+    """The component with an everyday name, of several the one that is listed first; None without one.
 
     Args:
         word: The everyday name, such as ``unicycle``.

@@ -87,7 +87,7 @@ class Odometry(Message):
 
 @dataclass(eq=False)
 class LaserScan(Message):
-    """A scan: angles [rad], times [s], ranges (N,) [m], float32; the stamp is that of its first beam."""
+    """A scan: angles [rad], times [s], ranges (N,) [m], float32; the stamp is the time of its first beam."""
 
     ros_type: ClassVar[str] = "sensor_msgs/LaserScan"
 

@@ -54,9 +54,9 @@ class Choices:
 
 
 def component_meant(word: Any, names: Sequence[str]) -> str | None:
-    """The component that has an everyday name, such as ``diff`` for ``unicycle``; None if there is none."""
-    found: str | None = call_home("irsim.lookup.meant:component_meant", str(word), names)
-    return found
+    """The component that has an everyday name, such as ``diff`` for ``unicycle``; None without one."""
+    meant: str | None = call_home("irsim.lookup.meant:component_meant", str(word), names)
+    return meant
 
 
 def page_about(word: Any) -> str | None:

@@ -1,4 +1,4 @@
-"""What sensors without beams reported in a recorded run, as columns of tables: ``odometry.x``, ``imu.yaw_rate``."""
+"""Reports of sensors without beams in a recorded run, as columns of tables: ``odometry.x``, ``imu.yaw_rate``."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def reading_columns(trace: Trace, objects: Sequence[int]) -> list[str]:
 
 
 def reading_cell(trace: Trace, column: str, row: int, index: int) -> Cell:
-    """A number of a sensor; of one that reports rows of them those of all rows that have any, separated by spaces.
+    """A number of a sensor; of one that reports rows, the numbers of all rows that have any, separated by spaces.
 
     It is None for an object without the sensor, and for a number that is missing.
     """

@@ -48,7 +48,7 @@ KINDS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
 """Kind -> keys of an exact sensor, and keys that add standard deviations to it."""
 NEEDED = {"uwb": {"anchors": [[0.5, 9], [9, 1]]}, "ir_range": {"range_max": 4}}
 WITHOUT_SPREAD = {"bumper", "cliff", "contact2d"}
-"""Kinds of sensors whose errors are shares of readings, or that have none."""
+"""Kinds of sensors whose errors are shares of readings, or that have no errors."""
 
 
 def measured(name: str, keys: dict[str, Any], **randomize: Any) -> Floats:

@@ -21,7 +21,7 @@ async def test_from_a_template_to_a_run(workspace: Path, era: str) -> None:
         tools = {tool.name: tool for tool in (await client.list_tools()).tools}
 
         index = await client.text("lookup")
-        assert len(index.splitlines()) <= 70
+        assert len(index.splitlines()) <= 75
         assert "corridor-passing" in index
 
         answer = await client.text("lookup", topic="corridor-passing", parameters={"width": 1.4})

@@ -58,6 +58,6 @@ def test_a_name_leads_first_to_where_it_is_explained(html: Path) -> None:
 
 @pytest.mark.parametrize(("slip", "word"), [("lidr", "lidar"), ("benchmrk", "benchmark"), ("trajectroy", "trajectory")])
 def test_a_misspelt_word_finds_what_the_word_finds(html: Path, slip: str, word: str) -> None:
-    found, right = answers(html, [slip, word])
-    assert set(found[:5]) <= set(right)
-    assert len(found) >= 5
+    named, right = answers(html, [slip, word])
+    assert set(named[:5]) <= set(right)
+    assert len(named) >= 5

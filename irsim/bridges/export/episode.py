@@ -187,7 +187,7 @@ class ExportedEpisode:
 
     @cached_property
     def gauges(self) -> tuple[ExportedGauge, ...]:
-        """The sensors of the actors that report numbers; those that report rows of them belong to the ranges."""
+        """The sensors of the actors that report numbers; sensors that report rows of numbers belong to the ranges."""
         gauges = exported_gauges(self.run, self.actors)
         return tuple(gauge for gauge in gauges if self.with_ranges or not gauge.has_rows)
 

@@ -32,12 +32,12 @@ def geodetic(east: float, north: float, origin: Sequence[float]) -> tuple[float,
     along = (curvature * (1 - squared) + height) * sin_lat + cos_lat * north
     radius, polar = math.hypot(out, east), _AXIS_M * (1 - _FLATTENING)
     reduced = math.atan2(along * _AXIS_M, radius * polar)
-    found = math.atan2(
+    latitude = math.atan2(
         along + squared / (1 - squared) * polar * math.sin(reduced) ** 3,
         radius - squared * _AXIS_M * math.cos(reduced) ** 3,
     )
-    sin_found, cos_found = math.sin(found), math.cos(found)
+    sin_found, cos_found = math.sin(latitude), math.cos(latitude)
     own = _AXIS_M * math.sqrt(1 - squared * sin_found * sin_found)
     above = radius * cos_found + along * sin_found - own
     around = math.degrees(longitude + math.atan2(east, out))
-    return math.degrees(found), (around + 180) % 360 - 180, above
+    return math.degrees(latitude), (around + 180) % 360 - 180, above

@@ -18,7 +18,7 @@ from irsim.simulation.scene import Gauge
 __all__ = ["Instruments"]
 
 GRAVITY = 9.80665
-"""What an accelerometer that stands reports along its z axis [m/s^2] (REP 145)."""
+"""The number that an accelerometer at rest reports along its z axis [m/s^2] (REP 145)."""
 _NO_FIX, _FIX, _GROUND_FIX = -1, 0, 2
 """Values of ``sensor_msgs/NavSatStatus``."""
 _UNKNOWN, _APPROXIMATED = 0, 1
@@ -48,7 +48,7 @@ class _Way:
 
 
 class Instruments:
-    """Makes the messages of sensors without beams. Covariances are those that the options of a sensor say.
+    """Makes the messages of sensors without beams. Covariances are as the options of a sensor say.
 
     Args:
         messages: Makes the parts of messages.
@@ -115,17 +115,17 @@ class Instruments:
 
     def _fix(self, gauge: Gauge, reading: Reading, stamp: int, own: str, body: str) -> Any:
         make, quality = self._make, float(reading["quality"])
-        found = quality >= 1
+        fixed = quality >= 1
         origin = gauge.settings["origin"]
-        place = geodetic(float(reading["x"]), float(reading["y"]), origin) if found else (math.nan,) * 3
-        status = _NO_FIX if not found else _GROUND_FIX if quality >= 2 else _FIX
-        variance = float(reading["std"]) ** 2 if found else 0.0
+        place = geodetic(float(reading["x"]), float(reading["y"]), origin) if fixed else (math.nan,) * 3
+        status = _NO_FIX if not fixed else _GROUND_FIX if quality >= 2 else _FIX
+        variance = float(reading["std"]) ** 2 if fixed else 0.0
         return make("sensor_msgs", "NavSatFix")(
             make.header(stamp, own),
             make("sensor_msgs", "NavSatStatus")(status, _GPS),
             *place,
             np.diag([variance] * 3).ravel(),
-            _APPROXIMATED if found else _UNKNOWN,
+            _APPROXIMATED if fixed else _UNKNOWN,
         )
 
     def _range(self, gauge: Gauge, reading: Reading, stamp: int, own: str, body: str) -> Any:

@@ -134,7 +134,8 @@ class Messages:
     ) -> Any:
         """A scan; ranges of beams that hit nothing are infinite (REP 117).
 
-        The stamp is that of the last beam; the header has the time of the first one, ``beam_time`` [s] is between two.
+        The stamp is the time of the last beam; the header has the time of the first one. ``beam_time`` [s] is between
+        two beams.
         """
         first = max(0, stamp - round(beam_time * 1e9 * (len(ranges) - 1)))
         times = beam_time, scan_time

@@ -46,7 +46,7 @@ struct Timetable {
     while (steps < step && !due(step - steps)) ++steps;
     return steps;
   }
-  /// The step in which the data were measured that a sensor shows after a step; -1 if there are none yet.
+  /// The step in which the data were measured that a sensor shows after a step; -1 before the first.
   std::int64_t shown(std::int64_t step) const {
     std::int64_t measured = step - delay;
     while (measured >= 0 && !due(measured)) --measured;

@@ -292,7 +292,7 @@ OBJECTS: dict[str, Code] = {
     ),
     "lidar-too-short": Code(
         "lidar that sees less far than its robot needs to stop",
-        "What comes into reach of a lidar at top speed must be farther away than the robot drives until it stands: one "
+        "A thing that comes into reach of a lidar at top speed must be farther away than the way to a stand: one "
         "step, 'rate' and 'latency' of the lidar and the 'actuation' of the robot pass before it brakes by 'acce'. "
         "With 'range_dark' of 'realism', or of a 'device', the darkest object ('reflectivity') counts. Behaviors know "
         "what stands without a lidar; policies and programs that go by it need one that sees farther, or less speed. "

@@ -102,8 +102,9 @@ class Randomize(Options):
     acceleration: dict[str, Factors] = {}
     """Factor on the limits of accelerations."""
     sensor_noise: dict[str, FactorsFromZero] = {}
-    """Factor on the standard deviations of the sensors' errors, also of those that hold for an episode; at 0 they are
-    exact. Shares of readings that fail, systematic errors and rounding stay. A lidar's `std` needs `noise: true`."""
+    """Factor on the standard deviations of the sensors' errors, also of errors that hold for an episode; at 0
+    they are exact. Shares of readings that fail, systematic errors and rounding stay. A lidar's `std` needs
+    `noise: true`."""
     latency: dict[str, Steps] = {}
     """Steps after which actions of learners are executed; 0 is at once. Until the first one a learner stands still."""
     delay: dict[str, FactorsFromZero] = {}

@@ -55,11 +55,11 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 def _drifts(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     """Odometry that is farther off at the goal than the goal is wide."""
-    found = next((k for k, sensor in enumerate(record.sensors) if isinstance(sensor, Odometry)), None)
+    place = next((k for k, sensor in enumerate(record.sensors) if isinstance(sensor, Odometry)), None)
     placed = any(record.id in placement.objects for placement in context.resolved.placements)
-    if found is None or placed or not record.goals or record.wander:
+    if place is None or placed or not record.goals or record.wander:
         return
-    sensor: Any = record.sensors[found]
+    sensor: Any = record.sensors[place]
     legs = SizedBody(record, SizedShape(record.shape)).legs
     sideways = getattr(record.kinematics, "speeds", 1) == 2
     drift = drift_of(sensor, legs, None if sideways else record.state[2])
@@ -69,7 +69,7 @@ def _drifts(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     way = sum(math.dist(a, b) for a, b in legs)
     yield hint(
         "odometry-drifts",
-        (*context.entry_path(record, "sensors"), found),
+        (*context.entry_path(record, "sensors"), place),
         f"'{record.name}' goes by its odometry alone, which is off by {metres(min(drift.error, way))} (root mean "
         f"square) after {metres(way)} of way, mostly by {worst}; its goal_threshold is {metres(record.goal_threshold)}",
         fix="add {name: localization} to its sensors" + _smaller(sensor, drift, worst, record.goal_threshold),

@@ -67,6 +67,8 @@ LEFT_OUT = {
     "mixed": "it is several policies ([mixed_v2](mixed_v2.md))",
     "neupan": "it needs a package and a file of its authors",
     "process": "it is a program that the user brings",
+    "goal_lidar_noisy": "it was trained for a lidar that errs and an estimated pose, which these suites do not have "
+    "([realism](realism.md))",
     "rl_rvo_authors": "its weights are the authors' ([policies of the paper](policies_of_the_paper.md))",
 }
 """Policy that no table has -> why."""

@@ -1,4 +1,4 @@
-"""What sensors without beams reported, in files that others read."""
+"""Reports of sensors without beams, in files that others read."""
 
 from __future__ import annotations
 
@@ -82,9 +82,11 @@ def test_wheel_odometry_becomes_as_unsure_as_its_errors_are(run: Run, bag: Bag) 
     heading = 0.2 + np.cumsum(turned, axis=1)
     middle = heading - turned / 2
     ends = np.stack([(ahead * np.cos(middle)).sum(1), (ahead * np.sin(middle)).sum(1), heading[:, -1]])
-    expected, found = np.cov(ends), matrix(odometry.pose.covariance, 6)[np.ix_([0, 1, 5], [0, 1, 5])]
-    np.testing.assert_allclose(np.diag(found), np.diag(expected), rtol=0.12)
-    assert np.corrcoef(ends)[1, 2] == pytest.approx(found[1, 2] / math.sqrt(found[1, 1] * found[2, 2]), abs=0.06)
+    expected, measured = np.cov(ends), matrix(odometry.pose.covariance, 6)[np.ix_([0, 1, 5], [0, 1, 5])]
+    np.testing.assert_allclose(np.diag(measured), np.diag(expected), rtol=0.12)
+    assert np.corrcoef(ends)[1, 2] == pytest.approx(
+        measured[1, 2] / math.sqrt(measured[1, 1] * measured[2, 2]), abs=0.06
+    )
 
 
 def test_satellite_navigation_gives_places_on_the_earth_and_none_in_a_tunnel(run: Run, bag: Bag) -> None:

@@ -100,8 +100,8 @@ def test_places_on_the_tangent_plane_are_where_they_are_on_the_earth(origin: tup
     for x, y in ((0.0, 0.0), (5.0, -3.0), (800.0, 1200.0)):
         latitude, longitude, height = geodetic(x, y, origin)
         assert -180 <= longitude < 180
-        found = cartesian(latitude, longitude, height)
-        np.testing.assert_allclose(found, cartesian(*origin) + x * east + y * north, atol=1e-6)
+        place = cartesian(latitude, longitude, height)
+        np.testing.assert_allclose(place, cartesian(*origin) + x * east + y * north, atol=1e-6)
 
 
 def test_an_origin_beyond_the_poles_is_refused() -> None:

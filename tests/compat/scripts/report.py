@@ -30,5 +30,5 @@ def error_of(call, *args, **kwargs):
     try:
         call(*args, **kwargs)
     except Exception as error:
-        return type(error).__name__
+        return next(kind.__name__ for kind in type(error).__mro__ if kind.__module__ == "builtins")
     return "none"
