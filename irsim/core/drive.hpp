@@ -96,6 +96,9 @@ std::array<Vec2, 2> wheels(const Options&) {
   return {};
 }
 
+/// Body-frame places of a left and a right wheel at this distance of each other [m].
+inline std::array<Vec2, 2> side_by_side(double track) { return {{{0.0, 0.5 * track}, {0.0, -0.5 * track}}}; }
+
 template <class Options>
 std::optional<Car> steering(const Options&) {
   return std::nullopt;

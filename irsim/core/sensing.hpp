@@ -62,6 +62,11 @@ struct Sensing {
   std::uint64_t scan_number() const { return static_cast<std::uint64_t>(state.count[w]); }
 };
 
+/// The multiple of a step that is nearest to a measured value; the value itself without a step.
+inline double nearest_multiple(double value, double step) {
+  return step > 0.0 ? step * std::floor(value / step + 0.5) : value;
+}
+
 template <class Options>
 int velocity_rows(const Options&) {
   return 0;

@@ -22,9 +22,7 @@ inline void diff(const DiffOptions& options, const Motion& m) {
   move_on_ground(m, {speeds.x, 0.0}, speeds.y, {ground.x, 0.0}, ground.y);
 }
 
-inline std::array<Vec2, 2> wheels(const DiffOptions& options) {
-  return {{{0.0, 0.5 * options.track}, {0.0, -0.5 * options.track}}};
-}
+inline std::array<Vec2, 2> wheels(const DiffOptions& options) { return side_by_side(options.track); }
 
 inline Rows rows(const DiffOptions&) { return {1, 1}; }
 

@@ -137,9 +137,7 @@ inline void diff_dynamic(const DiffDynamicOptions& o, const Motion& m) {
   set_mean_twist(m, before, turned);
 }
 
-inline std::array<Vec2, 2> wheels(const DiffDynamicOptions& o) {
-  return {{{0.0, 0.5 * o.track}, {0.0, -0.5 * o.track}}};
-}
+inline std::array<Vec2, 2> wheels(const DiffDynamicOptions& o) { return side_by_side(o.track); }
 
 inline Rows rows(const DiffDynamicOptions& o) { return {1, 1, 2, true, std::isfinite(o.slip_stiffness)}; }
 

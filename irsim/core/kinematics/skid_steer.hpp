@@ -52,9 +52,7 @@ inline void skid_steer(const SkidSteerOptions& options, const Motion& m) {
                  {(r * icr_left - l * icr_right) / apart, -options.icr_ahead * rate}, rate);
 }
 
-inline std::array<Vec2, 2> wheels(const SkidSteerOptions& options) {
-  return {{{0.0, 0.5 * options.track}, {0.0, -0.5 * options.track}}};
-}
+inline std::array<Vec2, 2> wheels(const SkidSteerOptions& options) { return side_by_side(options.track); }
 
 inline Rows rows(const SkidSteerOptions&) { return {1, 1, 2, false, true}; }
 

@@ -31,10 +31,12 @@ void note_standings(const World& world, State& state, int w) {
   }
 }
 
-/// Whether an object has arrived for good: a robot with nowhere else to go, where the world says so.
-bool is_settled(const World& world, const State& state, int row, int object) {
-  return world.after_arrival != kUnlatched && state.arrived[row] && world.is_robot[object] && !world.wander[object] &&
-         !world.loop[object];
+/// Whether an object goes on to other goals for ever.
+bool is_endless(const World& world, int object) { return world.wander[object] || world.loop[object]; }
+
+/// Whether an object arrives for good: a robot with nowhere else to go, where the world says so.
+bool settles(const World& world, int object) {
+  return world.after_arrival != kUnlatched && world.is_robot[object] && !is_endless(world, object);
 }
 
 /// Whether an object is on its recorded way to its goal: it may pass that place before its recording ends.
@@ -63,8 +65,7 @@ void arrive_in_belief(const World& world, State& state, int w, int object) {
   const Goal& goal = state.goal[row];
   const Pose& pose = state.pose[row];
   std::uint8_t &arrived = state.arrived[row], &rests = state.believes_arrived[row];
-  const bool for_good =
-      world.after_arrival != kUnlatched && world.is_robot[object] && !world.wander[object] && !world.loop[object];
+  const bool for_good = settles(world, object);
   constexpr double kStanding = 1e-3;  // slower objects stand [m/s]
   const double judged = world.specs[object].goal_threshold;
   const bool stands = std::hypot(state.twist[row][0], state.twist[row][1]) < kStanding;
@@ -77,7 +78,7 @@ void arrive_in_belief(const World& world, State& state, int w, int object) {
     state.sync_goal(row);
     return state.log(world, w, EventKind::waypoint, object, -1, pose.position());
   }
-  const bool endless = world.wander[object] || world.loop[object];
+  const bool endless = is_endless(world, object);
   const bool there = endless ? believed : at_goal(world, object, pose, goal, judged);
   if (believed && !rests && !endless) state.log(world, w, EventKind::believed_arrival, object, -1, pose.position());
   if (there && !arrived) state.log(world, w, EventKind::arrival, object, -1, pose.position());
@@ -107,7 +108,7 @@ void arrive(const World& world, State& state, int w) {
       continue;
     }
     const Pose& pose = state.pose[row];
-    if (state.arrived[row] && is_settled(world, state, row, i)) {
+    if (state.arrived[row] && settles(world, i)) {
       if (world.after_arrival == kFreeze) state.stopped[row] = 1;
       continue;
     }
@@ -128,7 +129,7 @@ void arrive(const World& world, State& state, int w) {
     } else {
       if (!state.arrived[row]) state.log(world, w, EventKind::arrival, i, -1, pose.position());
       state.arrived[row] = 1;
-      if (world.after_arrival == kFreeze && is_settled(world, state, row, i)) state.stopped[row] = 1;
+      if (world.after_arrival == kFreeze && settles(world, i)) state.stopped[row] = 1;
     }
   }
   if (state.keep_history) note_standings(world, state, w);

@@ -66,7 +66,7 @@ inline double measured(const ConeOptions& o, const Sensing& s, double exact, dou
   if (exact == kInfinity || luck < o.dropout) return kInfinity;
   const double sigma = s.noise() * std::hypot(o.std, o.std_per_meter * exact);
   const double range = sigma > 0.0 ? std::max(0.0, exact + sigma * s.draws().normals(s.scan_number())[0]) : exact;
-  return o.resolution > 0.0 ? o.resolution * std::floor(range / o.resolution + 0.5) : range;
+  return nearest_multiple(range, o.resolution);
 }
 
 /// Write the readings for a range; an infinite one reads the greatest range.

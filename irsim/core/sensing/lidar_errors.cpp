@@ -159,8 +159,7 @@ double cut_short(double rate, double range, double draw) {
 }
 
 double rounded(const LidarErrors& errors, double range) {
-  const double step = errors.resolution + errors.resolution_growth * range * range;
-  return step > 0.0 ? step * std::floor(range / step + 0.5) : range;
+  return nearest_multiple(range, errors.resolution + errors.resolution_growth * range * range);
 }
 
 }  // namespace

@@ -163,6 +163,43 @@ Mount beams_between(const std::vector<double>& bearings) {
   return mount;
 }
 
+/// Where one looks from, along which axis, and how far.
+struct Outlook {
+  Vec2 eye, axis;
+  double reach;
+};
+
+/// Of the beams that hit a target if it is alone: how many there are, and how many of them nothing stops before.
+struct BeamCount {
+  int whole = 0, open = 0;
+};
+
+/// Cast the beams of `beams_between` at a target, and at what may stand before it.
+BeamCount look_at(const World& world, const State& state, int w, int target, const std::vector<int>& blockers,
+                  const Outlook& from, const Mount& mount, BeamBuffers& buffers, BeamBuffers& spare) {
+  Fan seen(buffers, from.eye, from.axis, mount, from.reach), before(spare, from.eye, from.axis, mount, from.reach);
+  for (int k = 0; k < mount.count; ++k) {
+    const Vec2 beam = rotate(unit(mount.angle[k]), from.axis);
+    seen.aim(k, beam), before.aim(k, beam);
+  }
+  const auto consider = [&](Fan& fan, int i) {
+    const auto [centre, radius] = state.bounds(world, w, i);
+    fan.consider(i, centre, radius);
+  };
+  const auto footprint = [&](int i) { return state.footprint(world, w, i); };
+  consider(seen, target);
+  seen.cast(footprint);
+  for (const int i : blockers) consider(before, i);
+  before.cast(footprint);
+  BeamCount count;
+  for (int k = 2; k < mount.count; ++k) {
+    if (seen.hit(k) < 0) continue;
+    ++count.whole;
+    count.open += !(before.hit(k) >= 0 && before.range(k) < seen.range(k) * (1.0 - 1e-12));
+  }
+  return count;
+}
+
 /// Whether some part of `target` in the sector is not hidden from the apex by other objects.
 bool is_partly_visible(const World& world, const State& state, int w, int object, int target, const Sector& sector,
                        Workspace& work) {
@@ -191,26 +228,9 @@ bool is_partly_visible(const World& world, const State& state, int w, int object
     if (blocker.box.meets(body.box)) bearings.add_crossings(body, blocker);
   }
   const Mount mount = beams_between(bearings.sorted());
-  const Vec2 axis = unit(sector.middle);
-  Fan seen(work.beams, sector.apex, axis, mount, sector.reach),
-      before(work.blockers, sector.apex, axis, mount, sector.reach);
-  for (int k = 0; k < mount.count; ++k) {
-    const Vec2 beam = rotate(unit(mount.angle[k]), axis);
-    seen.aim(k, beam);
-    before.aim(k, beam);
-  }
-  const auto footprint = [&](int i) { return state.footprint(world, w, i); };
-  seen.consider(target, body.centre, body.radius);
-  seen.cast(footprint);
-  for (const int i : blockers) {
-    const auto [centre, radius] = state.bounds(world, w, i);
-    before.consider(i, centre, radius);
-  }
-  before.cast(footprint);
-  for (int k = 2; k < mount.count; ++k) {
-    if (seen.hit(k) >= 0 && !(before.hit(k) >= 0 && before.range(k) < seen.range(k) * (1.0 - 1e-12))) return true;
-  }
-  return false;
+  return look_at(world, state, w, target, blockers, {sector.apex, unit(sector.middle), sector.reach}, mount, work.beams,
+                 work.blockers)
+             .open > 0;
 }
 
 }  // namespace
@@ -239,33 +259,16 @@ double visible_share(const Sensing& s, Vec2 eye, int target) {
   const double distance = norm(centre - eye);
   if (distance <= radius) return 1.0;
   const double half = std::asin(radius / distance);
-  static thread_local std::vector<double> bearings;
-  bearings.clear();
+  std::vector<double> bearings;
   for (int k = 0; k <= kBeams; ++k) bearings.push_back(half * (2.0 * k / kBeams - 1.0));
-  const Mount mount = beams_between(bearings);
-  const Vec2 axis = (centre - eye) * (1.0 / distance);
-  const double reach = distance + radius;
-  Fan seen(s.buffers, eye, axis, mount, reach), before(s.spare, eye, axis, mount, reach);
-  for (int k = 0; k < mount.count; ++k) {
-    const Vec2 beam = rotate(unit(mount.angle[k]), axis);
-    seen.aim(k, beam), before.aim(k, beam);
-  }
-  const auto footprint = [&](int i) { return s.footprint(i); };
-  seen.consider(target, centre, radius);
-  seen.cast(footprint);
+  std::vector<int> blockers;
   for (const int i : s.world.visible) {
-    if (i == s.mount.object || i == target) continue;
-    const auto [other, size] = s.bounds(i);
-    before.consider(i, other, size);
+    if (i != s.mount.object && i != target) blockers.push_back(i);
   }
-  before.cast(footprint);
-  int whole = 0, open = 0;
-  for (int k = 2; k < mount.count; ++k) {
-    if (seen.hit(k) < 0) continue;
-    ++whole;
-    open += !(before.hit(k) >= 0 && before.range(k) < seen.range(k) * (1.0 - 1e-12));
-  }
-  return whole > 0 ? static_cast<double>(open) / whole : 0.0;
+  const BeamCount count =
+      look_at(s.world, s.state, s.w, target, blockers, {eye, (centre - eye) * (1.0 / distance), distance + radius},
+              beams_between(bearings), s.buffers, s.spare);
+  return count.whole > 0 ? static_cast<double>(count.open) / count.whole : 0.0;
 }
 
 }  // namespace irsim

@@ -9,7 +9,7 @@
 
 namespace irsim {
 
-/// The roles that a detector looks for.
+/// The roles that a detector looks for, as in `has_role`.
 enum class Targets : std::uint8_t { all, robot, obstacle };
 
 struct DetectorOptions {
@@ -110,9 +110,7 @@ class Tracker {
  private:
   double* at(int k) const { return tracks_ + static_cast<std::ptrdiff_t>(k) * kTrackMemory; }
   void drop(int k) { std::fill_n(at(k), kTrackMemory, kNone); }
-  bool is_target(int i) const {
-    return o_.targets == Targets::all || (o_.targets == Targets::robot) == (s_.world.is_robot[i] != 0);
-  }
+  bool is_target(int i) const { return has_role(s_.world, static_cast<int>(o_.targets), i); }
   double chance(double distance) const {
     if (!(o_.half_range > 0.0)) return o_.probability;
     if (!(o_.range_softness > 0.0)) return distance <= o_.half_range ? o_.probability : 0.0;

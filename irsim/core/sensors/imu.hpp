@@ -41,8 +41,7 @@ inline int memory(const ImuOptions&) { return kGaugeMemory + 7 + SinceReading::k
 
 /// A number within a range, as multiples of a resolution.
 inline double quantised(double value, double resolution, double range) {
-  value = clip(value, -range, range);
-  return resolution > 0.0 ? resolution * std::floor(value / resolution + 0.5) : value;
+  return nearest_multiple(clip(value, -range, range), resolution);
 }
 
 inline void imu(const ImuOptions& o, const Sensing& s) {

@@ -38,7 +38,7 @@ void nearest_objects(const World& world, const State& state, const std::vector<B
   const Shapes& shapes = *state.scenes[w].shapes;
   const BoundingCircle& own = circles[self];
   for (int i = 0; i < world.objects; ++i) {
-    if (i == self || (roles != 0 && (roles == 1) != (world.is_robot[i] != 0))) continue;
+    if (i == self || !has_role(world, roles, i)) continue;
     if (world.is_static[i] && !(statics && is_compact(world, shapes, i))) continue;
     const BoundingCircle& other = circles[i];
     const double gap = norm(other.centre - own.centre) - other.radius - own.radius;

@@ -22,8 +22,7 @@ Ego ego_of(const Decision& decision, int k);
 inline bool is_shown(const Decision& decision, int ego, int other) {
   const World& world = decision.world;
   if (other == ego) return false;
-  const int roles = world.target_roles[ego];
-  if (roles == 0 || (roles == 1) == (world.is_robot[other] != 0)) return true;
+  if (has_role(world, world.target_roles[ego], other)) return true;
   return decision.grouped && world.group[other] == world.group[ego];
 }
 

@@ -20,6 +20,11 @@ const Scan* gauge_of(const World& world, int object) {
   return nullptr;
 }
 
+/// The readings of the world of a row.
+const double* readings_of(const World& world, const State& state, int row) {
+  return state.readings.data + static_cast<std::size_t>(row / world.objects) * world.readings_per_world;
+}
+
 }  // namespace
 
 Perception perception_of(const World& world, int object, const ObjectSpec& spec) {
@@ -47,8 +52,7 @@ bool estimates(const World& world, int object) {
 Pose believed_pose(const World& world, const State& state, int row) {
   const int object = row % world.objects;
   if (!estimates(world, object)) return state.pose[row];
-  const std::size_t first = static_cast<std::size_t>(row / world.objects) * world.readings_per_world;
-  const double* const read = state.readings.data + first + world.perception[object].pose;
+  const double* const read = readings_of(world, state, row) + world.perception[object].pose;
   return std::isfinite(read[0]) ? Pose{read[0], read[1], read[2]} : state.pose[row];
 }
 
@@ -68,7 +72,7 @@ void believe(const World& world, const State& state, int row, Beliefs& out) {
                           rotate(out.velocities[m], out.turn)});
   }
   if (perception.tracks < 0) return;
-  const std::size_t at = static_cast<std::size_t>(row / world.objects) * world.readings_per_world + perception.tracks;
+  const double* const tracks = readings_of(world, state, row) + perception.tracks;
   const Vec2 ahead = unit(out.pose.theta);
   const auto follow = [&](Sighting& sighting, const double* track) {
     const Vec2 place = out.pose.position() + rotate(Vec2{track[kTrackX], track[kTrackY]}, ahead);
@@ -79,7 +83,7 @@ void believe(const World& world, const State& state, int row, Beliefs& out) {
   std::vector<const double*>& strays = out.false_tracks;
   strays.clear();
   for (int k = 0; k < perception.slots; ++k) {
-    const double* const track = state.readings.data + at + static_cast<std::size_t>(k) * kTrack;
+    const double* const track = tracks + static_cast<std::ptrdiff_t>(k) * kTrack;
     if (!std::isfinite(track[kTrackId])) continue;
     if (track[kTrackSource] < 0.0) strays.push_back(track);
     for (std::size_t m = 0; m < world.moving.size(); ++m) {

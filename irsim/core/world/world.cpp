@@ -135,8 +135,8 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
       placements(std::move(placements_)),
       perturbations(std::move(perturbations_)),
       zones(std::move(zones_)),
-      views(std::move(views_)),
       wheels_slip(!zones.grounds.empty()),
+      views(std::move(views_)),
       is_target(objects, 0) {
   if (copies < 0) throw std::invalid_argument("copies must not be negative");
   for (const View& view : views) {

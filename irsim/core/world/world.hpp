@@ -150,6 +150,11 @@ struct World {
   double cell(const Shapes& of, const std::vector<int>& ids) const;
 };
 
+/// Whether an object has one of some roles. 0: all, 1: robots, 2: obstacles.
+inline bool has_role(const World& world, int roles, int object) {
+  return roles == 0 || (roles == 1) == (world.is_robot[object] != 0);
+}
+
 /// Largest friction with the ground [N]; infinite for an object of infinite mass.
 inline double ground_friction(const World& world, int object) {
   const BodyDynamics& m = world.dynamics[object];
