@@ -18,6 +18,7 @@ from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow, E
 __all__ = [
     "ALL",
     "KEYS",
+    "PERTURBED",
     "counts_once",
     "first_of_each",
     "grouped_notes",
@@ -35,6 +36,8 @@ ALL = "(all)"
 """Name of the rows over all scenarios; with several protocols the rows of one are ``(all)/PROTOCOL``."""
 KEYS = tuple(metric.key for metric in (*METRICS, *EPISODE_METRICS))
 """Keys of the metrics of an episode."""
+PERTURBED = "perturbed, drawn uniformly for each seed"
+"""The words of notes about what each seed changes; other notes are warnings."""
 _PROPORTIONS = frozenset(metric.key for metric in (*METRICS, *EPISODE_METRICS) if metric.unit == "0/1")
 """Keys of the metrics that are 0 or 1."""
 _OUTCOMES = ("success", "collision", "timeout")
@@ -215,7 +218,7 @@ def perturbation_notes(changes: Mapping[str, Sequence[str]]) -> list[str]:
     Args:
         changes: The changes by each seed in each scenario, in words.
     """
-    notes = {name: f"perturbed, drawn uniformly for each seed: {'; '.join(parts)}" for name, parts in changes.items()}
+    notes = {name: f"{PERTURBED}: {'; '.join(parts)}" for name, parts in changes.items()}
     return list(notes.values())[:1] if len(set(notes.values())) == 1 else grouped_notes(notes)
 
 

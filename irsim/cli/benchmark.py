@@ -15,7 +15,7 @@ from rich.text import Text
 
 from irsim.benchmarks.labels import labels_of
 from irsim.benchmarks.report.rows import RANKS, rank_text, shown_ranks
-from irsim.benchmarks.summary import KEYS, is_summary
+from irsim.benchmarks.summary import KEYS, PERTURBED, is_summary
 from irsim.cli.benchmark_run import Wanted, run_benchmark
 from irsim.cli.findings import import_user_modules
 from irsim.cli.options import Imports, Json, MaxObjects, Perturb, Steps, Strict
@@ -261,12 +261,18 @@ def show_benchmark(result: BenchmarkResult, out: Console, *, verbose: bool = Tru
         shown = [f"{behaviors[one.behavior]} {rank_text(one)}" for one in ranks[name]]
         out.print(f"{name}: {RANKS[:1].lower()}{RANKS[1:]}: {', '.join(shown)}")
     if brief:
+        _show_notes([note for note in result.notes if PERTURBED not in note], out)
         failed = sum(bool(row.failed) for row in result.rows)
         rows = f"{failed} of {len(result.rows)} rows have failed episodes; " if failed else ""
         out.print(f"{rows}-v prints {'them, ' if failed else ''}policies and perturbed starts, the report has all")
     else:
         _show_details(result, out)
     out.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)
+
+
+def _show_notes(notes: list[str], out: Console) -> None:
+    for note in notes:
+        out.print(Text.assemble(("note: ", "bold"), clean(note, 400)))
 
 
 def _show_details(result: BenchmarkResult, out: Console) -> None:
@@ -284,8 +290,7 @@ def _show_details(result: BenchmarkResult, out: Console) -> None:
     for row in [row for row in result.rows if row.incident_seeds][:MAX_FAILED_LINES]:
         combination = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
         out.print(f"besides: {combination}: {seeds_of(row.incident_seeds, MAX_FAILED_SEEDS)}")
-    for note in result.notes:
-        out.print(Text.assemble(("note: ", "bold"), clean(note, 400)))
+    _show_notes(result.notes, out)
     periods = sorted(set(result.step_time.values()))
     out.print(f"metrics are sampled in every step ({', '.join(f'{period:g} s' for period in periods)})")
 

@@ -21,7 +21,7 @@ def _is_on_earth(origin: list[float]) -> list[float]:
     if abs(origin[0]) > 90 or abs(origin[1]) > 180:
         raise problem(
             "out-of-range",
-            f"latitude {origin[0]:g} and longitude {origin[1]:g} are not a place on the earth",
+            f"no place on the earth has latitude {origin[0]:g} and longitude {origin[1]:g}",
             allowed="latitudes from -90 to 90, longitudes from -180 to 180",
             fix="origin: [48.1, 11.6, 520]",
         )
