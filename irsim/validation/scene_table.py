@@ -14,7 +14,6 @@ import numpy as np
 import irsim._core as core
 from irsim.common.outline import outline
 from irsim.common.text import plural
-from irsim.episodes.scene_summary import called
 from irsim.results.picture import LidarHits, SceneRow, SceneTable
 from irsim.scenario.resolve.body_size import has_fixed_shape
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, random_parts
@@ -234,6 +233,11 @@ def _sensor(sensor: Any) -> str:
     return ", ".join(facts)
 
 
+def _plainly(record: ObjectRecord) -> str:
+    """The name of an object without quotes, or ``the map``."""
+    return record.called.removeprefix("the person ").strip("'")
+
+
 def lidar_hits(scenario: ResolvedScenario, seed: int) -> list[LidarHits]:
     """Count the beams of each of the first lidars that hit each object at the start; empty if there are too many.
 
@@ -256,7 +260,7 @@ def lidar_hits(scenario: ResolvedScenario, seed: int) -> list[LidarHits]:
     for row, first, count in built.scans():
         hits = Counter(state.hits[first : first + count].tolist())
         missed = hits.pop(-1, 0)
-        names = [(called(scenario, scenario.objects[k].name).strip("'"), beams) for k, beams in hits.most_common()]
+        names = [(_plainly(scenario.objects[k]), beams) for k, beams in hits.most_common()]
         sensors = scenario.objects[row].sensors
         place = sum(one.name == records[row].name for one in rows)
         which = sensors.index(_lidars(sensors)[place]) if len(sensors) > 1 else None

@@ -26,8 +26,6 @@ obstacle:
      distribution: {name: random, range_low: [3, 1, -3], range_high: [9, 5, 3]}}
 """
 """Some seeds place a rock on the way, others do not."""
-_EVERY = 7
-"""Every how many templates are measured."""
 
 
 async def test_several_seeds_are_told_with_a_picture_of_the_first_that_failed(client: Caller) -> None:
@@ -154,14 +152,15 @@ async def test_a_world_without_robots_is_not_told_to_be_run_again(client: Caller
 
 @pytest.mark.slow
 async def test_the_median_answer_is_short(client: Caller) -> None:
-    """Of templates, of one episode and of three."""
+    """Of all templates, of one episode and of three: all cut short, so that each has a failure to explain."""
     for seeds in ({}, {"seeds": 3}):
         sizes = []
-        for file in sorted((Path(__file__).parents[2] / "templates").glob("*/scenario.yaml"))[::_EVERY]:
+        for file in sorted((Path(__file__).parents[2] / "templates").glob("*/scenario.yaml")):
             text = file.read_text(encoding="utf-8")
             result = await client.call("run_episode", scenario_yaml=text, max_steps=60, **seeds)
             sizes.append(len(text_of(result).encode()))
-        assert statistics.median(sizes) <= 1_500, (seeds, sorted(sizes))
+        assert len(sizes) > 40
+        assert statistics.median(sizes) <= 1_750, (seeds, sorted(sizes))
 
 
 async def test_an_edit_is_run_and_compared_with_its_base_in_one_call(client: Caller) -> None:

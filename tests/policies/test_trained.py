@@ -22,7 +22,7 @@ from irsim.scenario.perturbation import perturbation_text
 RECIPES = Path(irsim.__file__).parents[1] / "skills" / "irsim-runner" / "recipes"
 LEAST = {
     "goal_lidar": 0.9,
-    "goal_lidar_noisy": 0.9,
+    "goal_lidar_noisy": 0.8,
     "crowd": 0.9,
     "corridor_social": 0.9,
     "multi_robot": 0.9,

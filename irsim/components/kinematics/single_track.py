@@ -15,7 +15,9 @@ from irsim.options.colors import ACKER_COLOR, OBSTACLE_COLOR
 from irsim.options.registry import KINEMATICS
 from irsim.options.units import Meters, MetersPerSecond, MetersPerSecondSquared, Number, Radians, RadiansPerSecond
 
-Positive = Annotated[Number, Field(gt=0)]
+Positive = Annotated[Number, Field(ge=1e-6, le=1e9)]
+CarLength = Annotated[Meters, Field(ge=0.01, le=100)]
+"""Lengths of cars, from toys to trains: with others the yaw rate leaves the range of numbers."""
 
 
 class SingleTrack(KinematicsOptions):
@@ -59,7 +61,7 @@ class SingleTrack(KinematicsOptions):
     mode: Literal["steer", "angular", "acceleration"] = "steer"
     """Controls: speed and steering angle (`steer`), speed and its rate (`angular`), or as in CommonRoad acceleration
     and that rate (`acceleration`), for policies and programs: behaviors give speeds."""
-    wheelbase: Annotated[Meters, Field(ge=0)] | None = None
+    wheelbase: CarLength | None = None
     """Distance between the axles; null is `front` plus `rear`, which another number stretches."""
     psi_max: Annotated[Radians, Field(gt=0, lt=math.pi / 2)] | None = None
     """Largest steering angle."""
@@ -77,9 +79,9 @@ class SingleTrack(KinematicsOptions):
     """Mass [kg]."""
     inertia: Positive | None = None
     """Moment of inertia about the vertical axis [kg m²]."""
-    front: Annotated[Meters, Field(gt=0)] | None = None
+    front: CarLength | None = None
     """Distance of the front axle from the centre of mass."""
-    rear: Annotated[Meters, Field(gt=0)] | None = None
+    rear: CarLength | None = None
     """Distance of the rear axle from the centre of mass."""
     height: Annotated[Meters, Field(ge=0)] | None = None
     """Height of the centre of mass, for the load that braking shifts."""

@@ -43,7 +43,7 @@ def short_lidar(context: Context, path: Path, sensor: Any, record: ObjectRecord)
     seen = sensor.range_max
     if sensor.realism is not None and darkest is not None:
         seen = sensor.realism.range_of(darkest.reflectivity, seen)
-    if seen >= needed:
+    if not seen < needed < math.inf:  # who brakes by next to nothing needs more than any number
         return
     short = sensor.range_max < needed
     dark = "" if short or darkest is None else f" {darkest.called} (reflectivity {darkest.reflectivity:g}) from"

@@ -21,6 +21,13 @@ from tests.interop.ros.conftest import SCENE, MakeEnv
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("ros_others")]
 
 
+SENSING = SCENE.replace(
+    "sensors: [",
+    "sensors: [{name: imu}, {name: odometry}, {name: gnss}, {name: sonar}, {name: ir_range}, {name: localization}, ",
+)
+"""The scene with a sensor of every kind that has a message."""
+
+
 def by_rosbags(folder: Path) -> dict[str, list[Any]]:
     from rosbags.highlevel import AnyReader
 
@@ -88,7 +95,7 @@ def test_a_run_that_does_not_begin_leaves_no_bag(make_env: MakeEnv) -> None:
 def test_all_messages_of_a_scene_have_equal_bytes(make_env: MakeEnv) -> None:
     from irsim.bridges.ros.backends.dds import struct_type
 
-    env = make_env(SCENE)
+    env = make_env(SENSING)
     for _ in range(3):
         env.step()
     scene, state = describe_scene(env.simulation), world_state(env.simulation, agent_rows(env.simulation))
