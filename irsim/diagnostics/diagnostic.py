@@ -12,6 +12,7 @@ from irsim.diagnostics.codes import CODES, TOOL_CODES
 
 __all__ = [
     "SLIP_SIMILARITY",
+    "Action",
     "Diagnostic",
     "Edit",
     "Path",
@@ -26,6 +27,7 @@ Otherwise = TypeVar("Otherwise", str, None)
 
 Severity = Literal["error", "warning", "hint"]
 Path = tuple[str | int, ...]
+Action = Literal["remove", "replace", "rename", "add", "insert", "delete", "duplicate"]
 _ORDER = {"error": 0, "warning": 1, "hint": 2}
 SLIP_SIMILARITY = 0.75
 """Similarity from which a word is a slip of another, 1 for equal words."""
@@ -35,10 +37,12 @@ SLIP_SIMILARITY = 0.75
 class Edit:
     """A machine-applicable repair: what to do with the node at ``path``.
 
-    ``safe`` means that the author surely meant this. Otherwise it is one of several repairs, and the author chooses.
+    ``insert``, ``delete`` and ``duplicate`` move the later items of a list; ``insert`` at its length appends, and makes
+    a list of a single value or of nothing. ``remove`` moves none. ``safe`` means that the author surely meant this.
+    Otherwise it is one of several repairs, and the author chooses.
     """
 
-    action: Literal["remove", "replace", "rename", "add"]
+    action: Action
     path: Path
     value: Any = None
     safe: bool = True

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from irsim.common.text import clean
 from irsim.diagnostics import diagnostic as diagnostics
-from irsim.diagnostics.diagnostic import Diagnostic, format_path
+from irsim.diagnostics.diagnostic import Action, Diagnostic, format_path
 from irsim.results.base import Result
 
 __all__ = ["Edit", "Finding"]
@@ -19,7 +19,7 @@ _MAX_GIVEN_LENGTH = 200
 class Edit(Result):
     """A repair that a program can make without guessing."""
 
-    action: Literal["remove", "replace", "rename", "add"]
+    action: Action
     path: str
     """The key or value to remove, replace or rename, or the key to add."""
     value: Any = None

@@ -10,6 +10,9 @@ from irsim.diagnostics.diagnostic import Edit, Path
 
 __all__ = ["apply_edits", "removal_edit"]
 
+_OF_LISTS = ("insert", "delete", "duplicate")
+"""Actions that move the later items of a list."""
+
 
 def apply_edits(data: Any, edits: Iterable[Edit]) -> Any:
     """A copy of ``data`` with the edits applied; an edit whose path no longer exists is skipped."""
@@ -19,7 +22,9 @@ def apply_edits(data: Any, edits: Iterable[Edit]) -> Any:
             result = edit.value if edit.action == "replace" else result
             continue
         parent = _parent(result, edit.path)
-        if isinstance(parent, dict):
+        if edit.action in _OF_LISTS:
+            _edit_items(result, parent, edit)
+        elif isinstance(parent, dict):
             _edit_mapping(parent, edit)
         elif isinstance(parent, list):
             _edit_list(parent, edit)
@@ -51,6 +56,23 @@ def _parent(data: Any, path: Path) -> Any:
 def _key(mapping: dict[Any, Any], part: str | int) -> Any:
     """Paths hold every key as text; the document may have numbers or booleans as keys."""
     return part if part in mapping else next((key for key in mapping if str(key) == part), part)
+
+
+def _edit_items(data: Any, parent: Any, edit: Edit) -> None:
+    index, holder = edit.path[-1], _parent(data, edit.path[:-1])
+    if not isinstance(index, int) or index < 0:
+        return
+    if not isinstance(parent, list) and edit.action == "insert" and isinstance(holder, dict):
+        parent = [] if parent is None else [parent]
+        holder[_key(holder, edit.path[-2])] = parent
+    if not isinstance(parent, list) or index > len(parent) - (edit.action != "insert"):
+        return
+    if edit.action == "delete":
+        del parent[index]
+    elif edit.action == "insert":
+        parent.insert(index, edit.value)
+    else:
+        parent.insert(index + 1, copy.deepcopy(parent[index]))
 
 
 def _edit_mapping(parent: dict[Any, Any], edit: Edit) -> None:

@@ -14,6 +14,7 @@ from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.yaml.edits import apply_edits
 from irsim.scenario.yaml.formatting import flow
+from irsim.scenario.yaml.items import copy_item, delete_item, insert_item, listed
 
 __all__ = ["rewrite", "yaml_flow"]
 
@@ -59,8 +60,12 @@ def yaml_flow(value: Any) -> str:
 
 
 def _apply(text: str, root: yaml.Node | None, edit: Edit) -> str:
+    if edit.action == "insert" and isinstance(edit.path[-1], int):
+        return _insert(text, root, edit)
     parent, last = node_at(root, edit.path[:-1]), edit.path[-1]
     if isinstance(parent, yaml.SequenceNode):
+        if edit.action in ("delete", "duplicate") and isinstance(last, int):
+            return (delete_item if edit.action == "delete" else copy_item)(text, parent, last)
         if edit.action != "replace" or not isinstance(last, int):
             raise _NotPossible
         return _replace(text, parent.value[last], edit.value)
@@ -81,6 +86,33 @@ def _apply(text: str, root: yaml.Node | None, edit: Edit) -> str:
     if edit.action == "replace":
         return _replace(text, value, edit.value, key)
     return _remove(text, parent, index)
+
+
+def _insert(text: str, root: yaml.Node | None, edit: Edit) -> str:
+    """Insert an item into a list, which is made if there is a single value, or nothing."""
+    *above, name, index = edit.path
+    holder = node_at(root, tuple(above))
+    if isinstance(holder, yaml.MappingNode):
+        pair = next(((key, value) for key, value in holder.value if is_key(key, name)), None)
+        if pair is None and index == 0:
+            new = _add(text, holder, str(name), None)
+            return _insert(new, yaml.compose(new, Loader=LOADER), edit)
+        if pair is not None and not isinstance(pair[1], yaml.SequenceNode):
+            if pair[1].tag == "tag:yaml.org,2002:null":
+                column = pair[0].start_mark.column
+                item = f"\n{' ' * (column + 2)}- {yaml_flow(edit.value)}"
+                end = text.index(":", pair[0].end_mark.index) + 1
+                return (
+                    text[:end]
+                    + (f" [{yaml_flow(edit.value)}]" if holder.flow_style else item)
+                    + text[end_of(pair[1]) :]
+                )
+            text = listed(text, *pair)
+            root = yaml.compose(text, Loader=LOADER)
+    items = node_at(root, edit.path[:-1])
+    if not isinstance(items, yaml.SequenceNode) or not isinstance(index, int):
+        raise _NotPossible
+    return insert_item(text, items, index, edit.value, yaml_flow)
 
 
 def _replace(text: str, node: yaml.Node, value: Any, key: yaml.Node | None = None) -> str:
