@@ -139,10 +139,10 @@ def _dash(text: str, items: yaml.SequenceNode, index: int) -> int:
     column = first - _line(text, first)
     before = items.value[index - 1]
     begin = _line_end(text, max(before.start_mark.index, end_of(before)) - 1)
-    found = re.compile(rf"^ {{{column}}}-(?=\s|$)", re.MULTILINE).search(text, begin)
-    if found is None:
+    match = re.compile(rf"^ {{{column}}}-(?=\s|$)", re.MULTILINE).search(text, begin)
+    if match is None:
         raise LookupError("an item without a dash of its own")
-    return found.end() - 1
+    return match.end() - 1
 
 
 def _line(text: str, place: int) -> int:
@@ -159,7 +159,7 @@ def _line_end(text: str, place: int) -> int:
 
 
 def _code_end(text: str, place: int) -> int:
-    """Index of the end of the last line before a place that is no comment, without the comment behind it."""
+    """Index of the end of the last line with data before a place, without the comment behind it."""
     lines = text[:place].split("\n")
     end = place
     for line in reversed(lines[:-1]):
@@ -178,7 +178,7 @@ def _without_anchors(text: str, start: int, end: int) -> str:
 
 
 def _handed_on(text: str, start: int, end: int) -> str:
-    """What follows a part of a text that is deleted, with the values to which only the part gives names."""
+    """The text behind a part that is deleted, with the values to which only the part gives names."""
     behind = text[end:]
     for anchor in _tokens(text, yaml.AnchorToken, start, end):
         name = re.compile(rf"\*{re.escape(anchor.value)}(?![\w-])")
