@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -95,7 +95,10 @@ class Artifact:
         control: (T, N, 3) executed controls, in single precision.
         goal: (T, N, 3) present goals; NaN without one.
         arrived, collided, stopped: (T, N) flags.
+        believes: (T, N) whether one that goes by an estimate believes to have arrived.
         at_rest: (T, N) whether it has stopped or arrived; of one that goes by an estimate, whether it believes so.
+        estimate: Row of an object that goes by an estimate -> (T, 3) pose that its sensor reported, NaN without one;
+            without objects whose readings are not in the record.
         events: The events, in order.
         result: Facts of ``result.json``, None if the run has not ended.
         cells: Occupied cells of the map, its corner and the extent of a cell; None without a map.
@@ -112,7 +115,9 @@ class Artifact:
     arrived: NDArray[np.bool_]
     collided: NDArray[np.bool_]
     stopped: NDArray[np.bool_]
+    believes: NDArray[np.bool_]
     at_rest: NDArray[np.bool_]
+    estimate: Mapping[int, Floats]
     events: Sequence[EventFacts]
     result: ResultFacts | None
     cells: tuple[NDArray[np.bool_], Floats, Floats] | None
@@ -160,7 +165,8 @@ def read_artifact(run: str | Path) -> Artifact:
     data = json_of(folder, "resolved.json")
     world, bodies = _bodies(data, meta, folder)
     pieces = _pieces(folder)
-    traces = [_read_piece(folder / name, len(bodies)) for name in pieces if name.startswith("trace")]
+    numbers = sum(count for _, _, count in meta.gauges)
+    traces = [_read_piece(folder / name, len(bodies), numbers) for name in pieces if name.startswith("trace")]
     if not traces:
         raise unreadable(f"run {folder.name} has no recorded steps")
     if sum(trace["pose"].size for trace in traces) > _MAX_NUMBERS:
@@ -183,11 +189,33 @@ def read_artifact(run: str | Path) -> Artifact:
         arrived=(flags & 1) != 0,
         collided=(flags & 2) != 0,
         stopped=(flags & 4) != 0,
+        believes=(flags & 8) != 0,
         at_rest=(flags & (4 | np.where([body.estimates for body in bodies], 8, 1))) != 0,
+        estimate=_estimates(meta, bodies, [trace["readings"] for trace in traces]),
         events=_events(folder, pieces),
         result=_result(folder),
         cells=_cells(folder, meta),
     )
+
+
+def _estimates(meta: Meta, bodies: Sequence[Body], readings: Sequence[Floats | None]) -> dict[int, Floats]:
+    """The reported poses of objects that go by an estimate: of their localization, else of their odometry."""
+    parts = [part for part in readings if part is not None]
+    if len(parts) < len(readings):
+        return {}
+    begins = dict[str, int]()
+    first = 0
+    for key, columns, count in meta.gauges:
+        if columns[:3] == ["x", "y", "theta"] and count >= 3:
+            begins[key] = first
+        first += count
+    estimates = {}
+    for row, body in enumerate(bodies):
+        keys = [key for kind in ("localization", "odometry") if (key := f"{body.name}/{kind}") in begins]
+        if body.estimates and keys:
+            begin = begins[keys[0]]
+            estimates[row] = np.concatenate([part[:, begin : begin + 3] for part in parts])
+    return estimates
 
 
 def _parsed(model: Any, data: Any, folder: Path, name: str) -> Any:
@@ -247,12 +275,13 @@ def _pieces(folder: Path) -> list[str]:
     return [name for _, name in pieces]
 
 
-def _read_piece(path: Path, count: int) -> dict[str, Any]:
+def _read_piece(path: Path, count: int, numbers: int) -> dict[str, Any]:
     try:
         with opened_archive(path, most_bytes=_MAX_PIECE_BYTES, most_entries=16, packed=False) as archive:
             about = _About.model_validate(read_json(archive.read("piece.json"), most_bytes=_MAX_PIECE_BYTES))
-            arrays = {name: read_array(archive, archive.getinfo(f"{name}.npy"), ("f8", "f4", "u1")) for name in _ARRAYS}
-        return _rows(about, arrays, count)
+            names = [*_ARRAYS, *(["readings"] if about.reading_rows else [])]
+            arrays = {name: read_array(archive, archive.getinfo(f"{name}.npy"), ("f8", "f4", "u1")) for name in names}
+        return _rows(about, arrays, count, numbers)
     except (ContentError, ValidationError, ValueError, KeyError, IndexError, OSError) as error:
         odd = isinstance(error, ValidationError)
         what = "piece.json has other keys or values than irsim writes" if odd else str(error)[:200]
@@ -267,13 +296,14 @@ class _About(BaseModel):
     movers: list[int]
     goal_rows: list[int]
     flag_rows: list[int]
+    reading_rows: list[int] = []
     events: list[EventFacts] = []
 
 
-def _rows(about: _About, arrays: dict[str, NDArray[Any]], count: int) -> dict[str, Any]:
+def _rows(about: _About, arrays: dict[str, NDArray[Any]], count: int, numbers: int) -> dict[str, Any]:
     """The rows of a piece, of all objects."""
     rows, movers = about.rows, about.movers
-    if rows * max(1, count) * 3 > _MAX_NUMBERS or (movers and not 0 <= min(movers) <= max(movers) < count):
+    if rows * max(1, count, numbers) * 3 > _MAX_NUMBERS or (movers and not 0 <= min(movers) <= max(movers) < count):
         raise ValueError("it has more rows or objects than the run")
     for name in ("pose", "control", "pose_at", "goal"):
         values = arrays[name]
@@ -287,7 +317,11 @@ def _rows(about: _About, arrays: dict[str, NDArray[Any]], count: int) -> dict[st
     pose[:, movers] = arrays["pose"]
     control = np.zeros((rows, count, 3))
     control[:, movers, :columns] = arrays["control"]
+    readings = None
+    if about.reading_rows:
+        readings = _expanded(about.reading_rows, arrays["readings"], rows, (numbers,)).astype(np.float64)
     return {
+        "readings": readings,
         "first": about.first,
         "pose": pose.astype(np.float64),
         "control": control,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from irsim.common.arrays import Floats
+from irsim.runs.audit.ground import Under
 
 __all__ = ["single_track"]
 
@@ -43,8 +44,12 @@ def _exponential(rates: Floats, time: float) -> tuple[Floats, Floats]:
     return exponential, mean
 
 
-def single_track(options: Mapping[str, Any], wheelbase: float) -> Callable[[list[float], list[float], float], None]:
+def single_track(
+    options: Mapping[str, Any], wheelbase: float
+) -> Callable[[list[float], list[float], float, Under], None]:
     """The motion of a car: advances x, y, heading, steering angle, speed, yaw rate and slip angle in place.
+
+    The speed is the one of its wheels, which is more than the one over ground where the rear ones slip.
 
     Args:
         options: Keys of its drive.
@@ -58,10 +63,11 @@ def single_track(options: Mapping[str, Any], wheelbase: float) -> Callable[[list
     saturates = options.get("tyres") != "linear"
     length, back = front + rear, rear if dynamic else 0.0
 
-    def possible(speed: float, wanted: float) -> float:
+    def possible(speed: float, wanted: float, pull: float) -> float:
         if (speed <= slowest and wanted <= 0) or (speed >= fastest and wanted >= 0):
             return 0.0
-        return _within(wanted, -acce_max, acce_max * switch / speed if speed > switch else acce_max)
+        most = acce_max * pull
+        return _within(wanted, -most, min(most, acce_max * switch / speed if speed > switch else acce_max))
 
     def rolling(speed: float, psi: float) -> _Pair:
         slope = math.tan(psi) / length
@@ -74,14 +80,16 @@ def single_track(options: Mapping[str, Any], wheelbase: float) -> Callable[[list
         wheels = rolling(speed, psi)
         return share * tyres[0] + (1 - share) * wheels[0], share * tyres[1] + (1 - share) * wheels[1]
 
-    def equations(speed: float, psi: float, acceleration: float, now: _Pair) -> tuple[Floats, Floats]:
+    def equations(
+        speed: float, psi: float, acceleration: float, now: _Pair, hold: list[float]
+    ) -> tuple[Floats, Floats]:
         rates, constant = np.array([[0.0, 0.0], [-1.0, 0.0]]), np.zeros(2)
         ahead, aside = abs(speed * math.cos(now[1])), speed * math.sin(now[1])
-        for load, stiffness, place, angle in (
-            (_GRAVITY * rear - acceleration * height, stiff_front, front, psi),
-            (_GRAVITY * front + acceleration * height, stiff_rear, -rear, 0.0),
+        for load, stiffness, place, angle, held in (
+            (_GRAVITY * rear - acceleration * height, stiff_front, front, psi, hold[0]),
+            (_GRAVITY * front + acceleration * height, stiff_rear, -rear, 0.0, hold[1]),
         ):
-            grip = friction * max(0.0, load) / length
+            grip = friction * held * max(0.0, load) / length
             give, arm = grip * stiffness, mass / inertia * place
             slide = angle - now[1] - place * now[0] / speed
             if not saturates or (abs(now[1]) <= _SPIN and abs(slide) * stiffness <= 1):
@@ -93,27 +101,30 @@ def single_track(options: Mapping[str, Any], wheelbase: float) -> Callable[[list
                 constant += [arm * force, force * math.cos(now[1]) / speed]
         return rates, constant
 
-    def advanced(speed: float, psi: float, acceleration: float, now: _Pair, dt: float) -> _Pair:
-        rates, constant = equations(speed, psi, acceleration, now)
+    def advanced(speed: float, psi: float, acceleration: float, now: _Pair, dt: float, hold: list[float]) -> _Pair:
+        rates, constant = equations(speed, psi, acceleration, now, hold)
         exponential, mean = _exponential(rates, dt)
         yaw, slip = (exponential @ now + dt * (mean @ constant)).tolist()
         return yaw, slip
 
-    def part(inner: list[float], control: list[float], dt: float) -> tuple[float, float, float, float]:
+    def part(inner: list[float], control: list[float], dt: float, under: Under) -> tuple[float, float, float, float]:
         """Advance the inner states; speed in the middle, turn, slip angle in the middle, change of the slip angle."""
-        psi0, speed0, tyres0 = inner[0], inner[1], (inner[2], inner[3])
+        psi0, rolled0, tyres0 = inner[0], inner[1], (inner[2], inner[3])
+        kept, hold = 1 - under[0][1], under[1]
+        pull = min(1.0, 0.5 * (hold[0] + hold[1]))
         if mode in (None, "steer"):
             way = _within(_within(control[1], -psi_max, psi_max) - psi0, -steer_rate * dt, steer_rate * dt)
         else:
             way = _within(control[1], -steer_rate, steer_rate) * dt
         psi = _within(psi0 + way, -psi_max, psi_max)
-        wanted = control[0] if mode == "acceleration" else (control[0] - speed0) / dt
-        gain = possible(speed0 + 0.5 * dt * possible(speed0, wanted), wanted)
-        speed = speed0 + gain * dt
+        wanted = control[0] if mode == "acceleration" else (control[0] - rolled0) / dt
+        gain = possible(rolled0 + 0.5 * dt * possible(rolled0, wanted, pull), wanted, pull)
+        rolled = rolled0 + gain * dt
         if mode == "acceleration":
-            speed = _within(speed, min(speed0, slowest), max(speed0, fastest))
+            rolled = _within(rolled, min(rolled0, slowest), max(rolled0, fastest))
+        inner[:2] = psi, rolled
+        speed0, speed = rolled0 * kept, rolled * kept
         v, angle = 0.5 * (speed0 + speed), 0.5 * (psi0 + psi)
-        inner[:2] = psi, speed
         if not dynamic:
             inner[2:] = speed * math.tan(psi) / wheelbase, 0.0
             return v, v * math.tan(angle) / wheelbase * dt, 0.0, 0.0
@@ -122,8 +133,8 @@ def single_track(options: Mapping[str, Any], wheelbase: float) -> Callable[[list
             turn, slip = rolling(v, angle)[0] * dt, rolling(v, angle)[1]
         else:
             change = (speed - speed0) / dt
-            middle = advanced(v, angle, change, tyres0, 0.5 * dt)
-            after = advanced(v, angle, change, middle, 0.5 * dt)
+            middle = advanced(v, angle, change, tyres0, 0.5 * dt, hold)
+            after = advanced(v, angle, change, middle, 0.5 * dt, hold)
             between, last = blended(v, angle, middle), blended(speed, psi, after)
             turn = dt / 6 * (first[0] + 4 * between[0] + last[0])
             slip = (first[1] + 4 * between[1] + last[1]) / 6
@@ -132,12 +143,12 @@ def single_track(options: Mapping[str, Any], wheelbase: float) -> Callable[[list
         inner[2:] = after
         return v, turn, slip, blended(speed, psi, after)[1] - first[1]
 
-    def step(state: list[float], control: list[float], dt: float) -> None:
+    def step(state: list[float], control: list[float], dt: float, under: Under) -> None:
         parts = max(1, math.ceil(dt / _SUB_STEP - 1e-9))
         x, y, heading = state[0] + back * math.cos(state[2]), state[1] + back * math.sin(state[2]), state[2]
         inner = state[3:]
         for _ in range(parts):
-            speed, turn, slip, bend = part(inner, control, dt / parts)
+            speed, turn, slip, bend = part(inner, control, dt / parts, under)
             chord = speed * dt / parts * float(np.sinc(0.5 * (turn + bend) / math.pi))
             x += chord * math.cos(heading + 0.5 * turn + slip)
             y += chord * math.sin(heading + 0.5 * turn + slip)

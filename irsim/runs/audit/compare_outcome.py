@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 from irsim.common.event_kinds import BETWEEN_STEPS
 from irsim.results.audit import AuditedRobot
 from irsim.runs.audit.artifact import Artifact, Body
+from irsim.runs.audit.compare_beliefs import compare_beliefs, distances_to, on_last_goal
 from irsim.runs.audit.record import EventFacts, RobotFacts
 from irsim.runs.audit.report import Report
 from irsim.runs.audit.shapes import Shape, signed_gap
@@ -36,8 +36,8 @@ def compare_arrivals(artifact: Artifact, report: Report) -> None:
         distance = _to_goal(artifact, body, row)
         flags, threshold = artifact.arrived[:, row], body.options.goal_threshold
         known = ~np.isnan(distance)
-        if body.estimates and (body.endless or len(body.facts.goals) > 1):
-            known &= False  # it goes on to its next goal where it believes to be at this one
+        if body.estimates:
+            known &= on_last_goal(artifact, body)  # it goes on to its next goal where it believes to be at this one
         report.compared(int(known.sum()))
         steps = np.arange(artifact.first, artifact.last + 1)
         passing = np.isin(steps, list(events.get(("waypoint", body.name), ())))
@@ -62,7 +62,7 @@ def compare_arrivals(artifact: Artifact, report: Report) -> None:
                 away = _distance(body, artifact.pose[place, row], artifact.goal[place - 1, row])
                 if not away < threshold + _ROUNDING and not (body.options.wander or body.estimates):
                     _differ(report, body, step, f"'{body.name}' is not at its waypoint in step {step}", away, threshold)
-    report.end()
+    report.end(compare_beliefs(artifact, report))
 
 
 def _differ(report: Report, body: Body, step: int, what: str, distance: float, threshold: float) -> None:
@@ -97,19 +97,11 @@ def _compare_goals(artifact: Artifact, body: Body, row: int, report: Report) -> 
 
 def _to_goal(artifact: Artifact, body: Body, row: int) -> Floats:
     """(T,) distance of a body from its goal, with the heading where it counts; NaN without a goal."""
-    return np.array(_distances(body, artifact.pose[:, row], artifact.goal[:, row]))
+    return np.array(distances_to(body, artifact.pose[:, row], artifact.goal[:, row]))
 
 
 def _distance(body: Body, pose: Floats, goal: Floats) -> float:
-    return float(_distances(body, pose[None], goal[None])[0])
-
-
-def _distances(body: Body, pose: Floats, goal: Floats) -> Floats:
-    turn = np.zeros(len(pose))
-    if body.options.arrive_mode == "state":
-        turn = np.nan_to_num(wrap(pose[:, 2] - goal[:, 2]))
-    distances: Floats = np.sqrt(((pose[:, :2] - goal[:, :2]) ** 2).sum(axis=1) + turn**2)
-    return distances
+    return float(distances_to(body, pose[None], goal[None])[0])
 
 
 def audited_robots(artifact: Artifact, shapes: Sequence[Shape]) -> list[AuditedRobot]:

@@ -12,12 +12,14 @@ from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 from irsim.runs.audit.artifact import Artifact, Body
 from irsim.runs.audit.cars import single_track
+from irsim.runs.audit.ground import FIRM, Footing, Under
 
 __all__ = ["INNER", "ends_of"]
 
 _SUB_STEP = 0.01
 """Longest part of a step [s]."""
-Step = Callable[[list[float], list[float], float], None]
+_GRAVITY = 9.81
+Step = Callable[[list[float], list[float], float, Under], None]
 """Advances x, y, heading and inner state under a control by a step, in place; the heading is not wrapped."""
 
 
@@ -64,9 +66,9 @@ def _tricycle(body: Body, exact: bool) -> Step:
         if state[3] != psi + way:
             state[4] = 0.0
 
-    def step(state: list[float], control: list[float], dt: float) -> None:
+    def step(state: list[float], control: list[float], dt: float, under: Under) -> None:
         parts = max(1, math.ceil(dt / _SUB_STEP - 1e-9))
-        speed, psi = control[0], state[3]
+        speed, psi = control[0] * (1 - under[0][0]), state[3]
         if ideal or not exact:
             forward, turn = speed * math.cos(psi), speed * math.sin(psi) / wheelbase
             if exact:
@@ -92,12 +94,18 @@ def _skid_steer(body: Body, exact: bool) -> Step:
     ahead = _number(options, "icr_ahead", 0.0)
     grip = _number(options, "traction_left", 1.0), _number(options, "traction_right", 1.0)
 
-    def step(state: list[float], control: list[float], dt: float) -> None:
+    track = _number(options, "track", 1.0)
+
+    def step(state: list[float], control: list[float], dt: float, under: Under) -> None:
         sides = [control[0] - 0.5 * believed * control[1], control[0] + 0.5 * believed * control[1]]
         scale = max(1.0, *(abs(speed) / fastest for speed in sides))
-        left, right = (share * speed / scale for share, speed in zip(grip, sides, strict=True))
-        rate = (right - left) / (left_at - right_at)
-        forward = (right * left_at - left * right_at) / (left_at - right_at)
+        slip, _, spread, traction = under
+        share = [t if s > 0 else g for g, s, t in zip(grip, spread, traction, strict=True)]
+        icr_left = 0.5 * spread[0] * track if spread[0] > 0 else left_at
+        icr_right = -0.5 * spread[1] * track if spread[1] > 0 else right_at
+        left, right = (share[k] * (1 - slip[k]) * sides[k] / scale for k in range(2))
+        rate = (right - left) / (icr_left - icr_right)
+        forward = (right * icr_left - left * icr_right) / (icr_left - icr_right)
         if exact:
             return _arc(state, forward, -ahead * rate, rate, dt)
         c, s = math.cos(state[2]), math.sin(state[2])
@@ -119,21 +127,32 @@ def _diff_dynamic(body: Body, exact: bool) -> Step:
     mass, inertia, radius, track, drag, turn_drag, resistance, constant, gear, response = (
         float(options[key]) for key in keys.split()
     )
-    most, voltage = _number(options, "torque_max", math.inf), _number(options, "voltage", math.inf)
+    strongest, voltage = _number(options, "torque_max", math.inf), _number(options, "voltage", math.inf)
+    friction = _number(options, "friction", math.inf)
     half, scale = track / 2, constant * gear / resistance
 
-    def possible(wanted: float, rate: float) -> float:
+    def most(grip: float) -> float:
+        """The largest torque of a wheel, which the motor gives and the ground bears."""
+        coefficient = grip if math.isinf(friction) and grip != 1 else friction * grip
+        return min(strongest, 0.5 * coefficient * mass * _GRAVITY * radius)
+
+    def possible(wanted: float, rate: float, most: float) -> float:
         own = constant * gear * rate
         return min(max(min(max(wanted, scale * (-voltage - own)), scale * (voltage - own)), -most), most)
 
-    def gain(v: float, w: float, control: list[float]) -> tuple[float, float]:
+    def gain(v: float, w: float, control: list[float], bounds: tuple[float, float]) -> tuple[float, float]:
         both = 0.5 * (mass * (control[0] - v) / response + drag * v) * radius
         apart = 0.5 * (inertia * (control[1] - w) / response + turn_drag * w) * radius / half
-        left = possible(both - apart, (v - half * w) / radius)
-        right = possible(both + apart, (v + half * w) / radius)
+        left = possible(both - apart, (v - half * w) / radius, bounds[0])
+        right = possible(both + apart, (v + half * w) / radius, bounds[1])
         return ((left + right) / radius - drag * v) / mass, ((right - left) * half / radius - turn_drag * w) / inertia
 
-    def step(state: list[float], control: list[float], dt: float) -> None:
+    def over_ground(v: float, w: float, slip: list[float]) -> tuple[float, float]:
+        left, right = (v - half * w) * (1 - slip[0]), (v + half * w) * (1 - slip[1])
+        return 0.5 * (left + right), 0.5 * (right - left) / half
+
+    def step(state: list[float], control: list[float], dt: float, under: Under) -> None:
+        slip, bounds = under[0], (most(under[1][0]), most(under[1][1]))
         motor = constant * gear / radius
         braking = 2 * motor**2 / resistance
         fast = max(1 / response, (braking + drag) / mass, (braking * half**2 + turn_drag) / inertia)
@@ -142,14 +161,15 @@ def _diff_dynamic(body: Body, exact: bool) -> Step:
         left, right = state[3:]
         v, w = 0.5 * radius * (left + right), 0.5 * radius * (right - left) / half
         for _ in range(parts):
-            a = gain(v, w, control)
-            b = gain(v + a[0] * h / 2, w + a[1] * h / 2, control)
-            c = gain(v + b[0] * h / 2, w + b[1] * h / 2, control)
-            d = gain(v + c[0] * h, w + c[1] * h, control)
+            a = gain(v, w, control, bounds)
+            b = gain(v + a[0] * h / 2, w + a[1] * h / 2, control, bounds)
+            c = gain(v + b[0] * h / 2, w + b[1] * h / 2, control, bounds)
+            d = gain(v + c[0] * h, w + c[1] * h, control, bounds)
             v1, w1 = (y + h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]) for i, y in enumerate((v, w)))
             vm, wm = 0.5 * (v + v1) + (a[0] - d[0]) * h / 8, 0.5 * (w + w1) + (a[1] - d[1]) * h / 8
-            middle, turn = h / 24 * (5 * w + 8 * wm - w1), h / 6 * (w + 4 * wm + w1)
-            for share, angle in ((v, 0.0), (4 * vm, middle), (v1, turn)):
+            (v_0, w_0), (v_m, w_m), (v_1, w_1) = (over_ground(*one, slip) for one in ((v, w), (vm, wm), (v1, w1)))
+            middle, turn = h / 24 * (5 * w_0 + 8 * w_m - w_1), h / 6 * (w_0 + 4 * w_m + w_1)
+            for share, angle in ((v_0, 0.0), (4 * v_m, middle), (v_1, turn)):
                 state[0] += h / 6 * share * math.cos(state[2] + angle)
                 state[1] += h / 6 * share * math.sin(state[2] + angle)
             state[2] += turn
@@ -175,14 +195,17 @@ _SPEEDS = {"single_track": slice(1, 4), "diff_dynamic": slice(0, 2)}
 """Inner states of each drive that are 0 once something has stopped its body."""
 
 
-def ends_of(artifact: Artifact, body: Body, row: int, stop: Floats) -> Floats:
+def ends_of(artifact: Artifact, body: Body, row: int, stop: Floats, footing: Footing | None) -> Floats:
     """(T - 1, 3) poses that a drive with inner states reaches from each recorded pose; they are as at the start.
+
+    They are NaN from the first step on in which it is not known which ground is under its wheels.
 
     Args:
         artifact: The run.
         body: The object.
         row: Its row.
         stop: (T - 1,) share of each step that it moved before it was stopped.
+        footing: The ground under its wheels; None if it slips nowhere.
     """
     count, make = INNER[str(body.drive)]
     exact = artifact.world.integration == "exact"
@@ -190,13 +213,16 @@ def ends_of(artifact: Artifact, body: Body, row: int, stop: Floats) -> Floats:
     inner = [float(value or 0.0) for value in [*body.facts.state[3:], *[0.0] * count][:count]]
     pose, control, still = artifact.pose[:, row], artifact.control[:, row], artifact.stopped[:, row]
     ends = np.full((len(pose) - 1, 3), np.nan)
+    known = np.ones(len(ends), dtype=bool) if footing is None else footing.known
     for k in range(len(ends)):
         if still[k] and body.drive in _SPEEDS:
             inner[_SPEEDS[body.drive]] = [0.0] * len(inner[_SPEEDS[body.drive]])
         if math.isnan(pose[k, 0]) or still[k]:
             continue
+        if not known[k]:
+            break
         state = [*pose[k].tolist(), *inner]
-        step(state, control[k + 1].tolist(), artifact.step_time)
+        step(state, control[k + 1].tolist(), artifact.step_time, FIRM if footing is None else footing.at(k))
         inner = state[3:]
         ends[k] = state[:3]
     return _stopped_early(pose[:-1], ends, stop, exact)

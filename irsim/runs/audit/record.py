@@ -24,6 +24,7 @@ class Meta(BaseModel):
     seed: Annotated[int, Field(ge=0, lt=2**128)]
     horizon: Step = 0
     options: dict[str, Any] = {}
+    gauges: list[tuple[Name, list[Name], Annotated[int, Field(ge=0, le=1_000_000)]]] = []
     scenario: Name | None = None
     irsim: Name = ""
     resolved: Name | None = None
@@ -32,11 +33,23 @@ class Meta(BaseModel):
     trace_until: Step | None = None
 
 
-class GroundFacts(BaseModel):
-    """The effect of the ground of a zone on wheels."""
+class DiscFacts(BaseModel):
+    """A disc of the world [m]."""
 
+    center: tuple[Finite, Finite]
+    radius: Annotated[float, Field(gt=0, le=1e12)]
+
+
+class GroundFacts(BaseModel):
+    """A zone, and the effect of its ground on wheels."""
+
+    line: list[tuple[Finite, Finite]] | None = None
+    polygon: Annotated[list[tuple[Finite, Finite]], Field(max_length=100_000)] | None = None
+    rectangle: tuple[Finite, Finite, Finite, Finite] | None = None
+    circle: DiscFacts | None = None
     slip: Finite = 0.0
     slip_std: Finite = 0.0
+    slip_time: Annotated[Finite, Field(ge=0)] = 1.0
     grip: Finite = 1.0
     surface: Name | None = None
 
@@ -88,6 +101,7 @@ class Options(BaseModel):
     actuation: ActuationFacts | None = None
     perceives: Literal["truth", "estimate", "tracks", "both"] = "truth"
     vel_dim: Annotated[int, Field(ge=0, le=3)] = 2
+    start_time: float = 0.0
     appear_time: float = 0.0
     vanish_time: float | None = None
 
@@ -95,7 +109,9 @@ class Options(BaseModel):
 class ObjectFacts(BaseModel):
     """Facts of one object."""
 
+    id: Annotated[int, Field(ge=0, lt=2**31)] = 0
     name: Name
+    form: Annotated[dict[str, Any] | None, Field(validation_alias="shape")] = None
     state: Annotated[list[float | None], Field(max_length=16)]
     goals: list[Annotated[list[float | None], Field(max_length=16)]] = []
     options: Annotated[int, Field(ge=0)]

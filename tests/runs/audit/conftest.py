@@ -16,6 +16,8 @@ from irsim.common.archives import pack_arrays
 from irsim.results.audit import RunAudit
 from irsim.runs.audit.audit import audit_runs
 
+TEMPLATES = Path(__file__).resolve().parents[3] / "templates"
+
 DISCS = """\
 world: {width: 10, height: 10, step_time: 0.5, time_limit: 10, collision_mode: MODE, contacts: CONTACTS}
 robot:

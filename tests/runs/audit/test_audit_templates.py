@@ -13,9 +13,8 @@ import pytest
 import yaml
 
 import irsim
-from tests.runs.audit.conftest import audited
+from tests.runs.audit.conftest import TEMPLATES, audited
 
-TEMPLATES = Path(__file__).resolve().parents[3] / "templates"
 NAMES = sorted(path.parent.name for path in TEMPLATES.glob("*/scenario.yaml"))
 MODES = {
     "swept": {"collision_mode": "stop", "contacts": "swept", "integration": "exact", "step_time": 0.2},
