@@ -38,6 +38,7 @@ class Feed:
     Attributes:
         viewers: Number of viewers that are reading.
         left: Moment in which the last viewer left; None as long as none has.
+        closed: Whether no frame follows, so that viewers leave once they have all.
     """
 
     def __init__(self) -> None:
@@ -47,6 +48,7 @@ class Feed:
         self._steps = 0
         self.viewers = 0
         self.left: float | None = None
+        self.closed = False
 
     def put(self, kind: int, content: bytes) -> None:
         """Append a frame."""
@@ -57,8 +59,14 @@ class Feed:
     def after(self, number: int, timeout: float) -> list[bytes]:
         """The frames from a number on; waits for the first of them, but not longer than ``timeout`` [s]."""
         with self._change:
-            self._change.wait_for(lambda: len(self._frames) > number, timeout)
+            self._change.wait_for(lambda: len(self._frames) > number or self.closed, timeout)
             return self._frames[number:]
+
+    def close(self) -> None:
+        """Say that no frame follows."""
+        with self._change:
+            self.closed, self._held = True, False
+            self._change.notify_all()
 
     def enter(self) -> None:
         """Count a viewer that begins to read."""

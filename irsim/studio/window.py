@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING
 from irsim.common.screen import has_screen
 from irsim.common.text import clean
 from irsim.studio.feed import END, Feed, Follower
-from irsim.studio.server import Server, serving
+from irsim.studio.live import live_server
 
 if TYPE_CHECKING:
     from irsim.results.run import RunResult
     from irsim.simulation.simulation import Simulation
+    from irsim.studio.server import Server
 
 __all__ = ["Window"]
 
@@ -54,7 +55,7 @@ class Window:
         """
         facts = {} if self._speed is None else {"speed": self._speed}
         self._follower = Follower(self._feed, simulation, horizon, **facts)
-        self._server = serving(self._port, self._feed)
+        self._server = live_server(self._port, self._feed)
         address = self._server.address
         self._say(f"watch: {address}")
         if self._browser and ("BROWSER" in os.environ or has_screen()):
@@ -92,7 +93,6 @@ class Window:
             what = "was interrupted" if kind is KeyboardInterrupt else "failed, and the terminal says why"
             summary = f"This run {what}; the page keeps what was simulated"
             self._put_end(outcome=None, status="interrupted", summary=summary, reason=None)
-            time.sleep(_LOOK_S if self._feed.viewers else 0)  # in which it is sent
+        self._feed.close()
         if self._server is not None:
-            self._server.shutdown()
-            self._server.server_close()
+            self._server.close()

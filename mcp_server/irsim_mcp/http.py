@@ -145,7 +145,7 @@ class _WithToken:
 
 def serve(server: MCPServer, where: Address, token: str | None, names: Sequence[str] = ()) -> None:
     """Serve until the process is terminated (see :func:`application`); writes the URL to standard error."""
-    from irsim_mcp.connections import server_of
+    from irsim.common.connections import server_of
 
     app = application(server, where, token, names)
     family = socket.AF_INET6 if ":" in where.host else socket.AF_INET

@@ -18,9 +18,10 @@ from urllib.parse import urlsplit
 import httpx2
 import pytest
 
-from irsim_mcp import bodies, connections, http, log, worker
+from irsim.common import connections
+from irsim.common.connections import most_connections, server_of
+from irsim_mcp import bodies, http, log, worker
 from irsim_mcp.bodies import WholeMessages
-from irsim_mcp.connections import most_connections, server_of
 from irsim_mcp.hosts import Address
 from irsim_mcp.http import application
 from irsim_mcp.server import build_server

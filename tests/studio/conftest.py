@@ -10,14 +10,15 @@ from typing import Any
 import pytest
 
 from irsim.studio.feed import Feed
-from irsim.studio.server import Server, serving
+from irsim.studio.live import live_server
+from irsim.studio.server import Server
 
 
 class Client:
     """Sends requests to a server; by default as its own page does."""
 
     def __init__(self, server: Server) -> None:
-        self.server, self.port = server, server.server_port
+        self.server, self.port = server, server.port
         self.cookie: str | None = None
 
     def ask(self, method: str, path: str, body: Any = None, **changes: str | None) -> http.client.HTTPResponse:
@@ -40,7 +41,8 @@ class Client:
             if value is not None:
                 connection.putheader(name, value)
         text = body if isinstance(body, str) else "" if body is None else json.dumps(body)
-        connection.putheader("Content-Length", str(len(text.encode())))
+        if "Content-Length" not in headers:
+            connection.putheader("Content-Length", str(len(text.encode())))
         connection.endheaders(text.encode())
         answer = connection.getresponse()
         if answer.getheader("Content-Type") != "application/octet-stream":  # which has no end
@@ -68,10 +70,9 @@ def feed() -> Feed:
 
 @pytest.fixture
 def server(feed: Feed) -> Iterator[Server]:
-    made = serving(0, feed)
+    made = live_server(0, feed)
     yield made
-    made.shutdown()
-    made.server_close()
+    made.close()
 
 
 @pytest.fixture

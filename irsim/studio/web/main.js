@@ -51,6 +51,7 @@ async function run() {
       await follow(next, (...one) => take(...one).catch(({ message }) => {
         throw new Refused(`this page does not work: ${message}`);
       }));
+      if (player.run && !player.run.growing) return; // the server has ended the stream, and nothing is left to come
     } catch (problem) {
       if (problem instanceof Refused) {
         say(`${problem.message}.`);

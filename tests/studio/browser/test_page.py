@@ -183,9 +183,7 @@ def test_it_says_that_irsim_is_gone(start: Start) -> None:
     watched = start(scene(), slowly, steps=100)
     page = watched.page
     page.route("**/stream", lambda route: route.abort())
-    server = watched.window._server
-    assert server is not None
-    server.feed.put(9, b"")  # no kind of frame
+    watched.window._feed.put(9, b"")  # no kind of frame
     page.evaluate("window.stop()")
     until(page, "document.getElementById('outcome').textContent === 'ended'", seconds=30)
     assert "irsim has ended; what was simulated until then stays here" in page.inner_text("#facts")

@@ -1,4 +1,4 @@
-"""Connections of the HTTP server: how many there are, and how long one may take; a lack of descriptors ends nothing."""
+"""Connections of an HTTP server: how many there are, and how long one may take; a lack of descriptors ends nothing."""
 
 from __future__ import annotations
 
