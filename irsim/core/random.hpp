@@ -110,7 +110,7 @@ struct Draws {
     return out;
   }
 
- private:
+  /// A word as a number in [0, 1).
   static double fraction(std::uint64_t word) { return static_cast<double>(word >> 11) * 0x1.0p-53; }
 };
 

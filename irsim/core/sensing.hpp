@@ -41,7 +41,8 @@ struct Sensing {
   std::int64_t steps = 1;             // since its last measurement; 0: it only keeps its memory up to date
 
   /// The draws of the sensor: lane 0 is the noise of ranges, directions and velocities; lanes 1 to 3 are for
-  /// lidars with errors: what becomes of a beam, how, and what holds for an episode.
+  /// lidars with errors: what becomes of a beam, how, and what holds for an episode. Multiples of 2^32 added to lane 0
+  /// serve the few of their normal draws that need more than a word.
   Draws draws(std::uint64_t lane = 0) const {
     return Draws(state.key(w), sensor_stream(mount.index), world.number[mount.object], lane);
   }

@@ -61,7 +61,7 @@ def test_without_errors_a_scan_is_the_plain_one() -> None:
     objects = [obstacle(pose=p, parts=[circle(0.4)]) for p in rng.uniform(-8, 8, (30, 3)).tolist()]
     for make in (lidar, fmcw):
         plain, with_none = (
-            scene(robot(sensors=[make(90, noise=True, angle_std=0.01, realism=realism)]), *objects, mode=1)[1]
+            scene(robot(sensors=[make(90, noise=True, std=0.0, angle_std=0.01, realism=realism)]), *objects, mode=1)[1]
             for realism in (None, errors())
         )
         np.testing.assert_array_equal(plain.ranges, with_none.ranges)
@@ -77,6 +77,19 @@ def test_noise_grows_with_the_range(radius: float) -> None:
     z = (state.ranges - radius) / sigma
     assert abs(z.mean()) < 4 / math.sqrt(z.size)
     assert z.std() == pytest.approx(1.0, abs=4 / math.sqrt(2 * z.size))
+
+
+def test_noise_is_normal_even_in_its_tails() -> None:
+    """Against the distribution function, by Kolmogorov and Smirnov's test, and far out, where one in 3,000 lies."""
+    z = (look(ring(5.0), number=20_000, seeds=range(20), noise=True, std=0.1).ranges - 5.0) / 0.1
+    below = [0.5 * math.erfc(-at / math.sqrt(2.0)) for at in np.sort(z)]
+    ranks = np.arange(z.size + 1) / z.size
+    assert max((below - ranks[:-1]).max(), (ranks[1:] - below).max()) < 1.95 / math.sqrt(z.size)  # 1 in 1,000
+    for bound in (1.0, 2.0, 3.0, 3.6, 3.7, 4.0):
+        expected = 0.5 * math.erfc(bound / math.sqrt(2.0))
+        for share in ((z > bound).mean(), (z < -bound).mean()):
+            assert share == pytest.approx(expected, abs=4 * math.sqrt(expected / z.size))
+    assert abs(np.corrcoef(z[:-1], z[1:])[0, 1]) < 4 / math.sqrt(z.size)
 
 
 def test_offset_and_scale_hold_for_an_episode_and_differ_between_episodes() -> None:

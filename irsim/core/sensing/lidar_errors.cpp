@@ -2,6 +2,7 @@
 
 #include "sensing/beams.hpp"
 #include "sensing/surface.hpp"
+#include "sensing/ziggurat.hpp"
 
 namespace irsim {
 namespace {
@@ -158,8 +159,11 @@ double cut_short(double rate, double range, double draw) {
   return rate > 0.0 ? -std::log(1.0 - draw * (1.0 - std::exp(-rate * range))) / rate : draw * range;
 }
 
+/// The multiple of the resolution at a range that is nearest to it.
 double rounded(const LidarErrors& errors, double range) {
-  return nearest_multiple(range, errors.resolution + errors.resolution_growth * range * range);
+  constexpr double kWhole = 0x1.8p52;  // a double of this size has no digits after the point
+  const double step = errors.resolution + errors.resolution_growth * range * range;
+  return step > 0.0 ? step * (range / step + kWhole - kWhole) : range;
 }
 
 }  // namespace
@@ -187,49 +191,62 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
   if (s.earlier) follow_motion(s, fan, surface);
   if (errors.divergence > 0.0 && errors.rays > 1) widen_beams(errors, s, fan);
 
-  NormalDraws normal(s.draws());
+  ZigguratDraws normal(s.draws());
   UniformDraws choice(s.draws(1));
-  const Draws details = s.draws(2), episode = s.draws(3);
-  const double scale = 1.0 + s.noise() * errors.scale_std * episode.normal(0);
-  const double bias = s.noise() * errors.bias_std * episode.normal(1);
+  const Draws details = s.draws(2);
+  const auto episode = s.draws(3).normals(0);
+  const double noise = s.noise(), scale = 1.0 + noise * errors.scale_std * episode[0];
+  const double bias = noise * errors.bias_std * episode[1];
   const double least_cosine = steep ? std::cos(errors.incidence_max) : 0.0;
   const double shorts = errors.dropout + errors.short_share, randoms = shorts + errors.random_share;
-  const bool chance = dim || randoms > 0.0;
+  const double per_plain = 1.0 / (1.0 - randoms);
+  const bool chance = dim || randoms > 0.0, blind = !errors.blind.empty();
   const Detection detected(errors, limits);
   const std::uint64_t first = s.scan_number() * static_cast<std::uint64_t>(s.all_beams) + s.first_beam;
+  // Copies, because for all that the compiler knows, writing a byte of `valid` could change what these point to.
+  const double nearest = limits.nearest, farthest = limits.farthest, variance = limits.std * limits.std;
+  const double growth = errors.std_per_meter, dropout = errors.dropout;
+  const double *const exacts = beams.range.data(), *const cosines = beams.cosine.data();
+  const double *const powers = beams.power.data(), *const reflectivity = s.world.reflectivity.data();
+  const std::int32_t* const seen = beams.hit.data();
+  double* const ranges = s.ranges;
+  std::int32_t* const hits = s.hits;
+  std::uint8_t* const valid = s.valid;
   for (int i = 0; i < n; ++i) {
-    int hit = beams.hit[i];
-    bool returned = hit >= 0 && !(steep && beams.cosine[i] < least_cosine);
+    int hit = seen[i];
+    const double exact = exacts[i];
+    bool returned = hit >= 0 && !(steep && cosines[i] < least_cosine);
     const double ahead = limits.depth == nullptr ? 1.0 : s.mount.cosine[i];  // share of the range along the axis
-    if (limits.depth != nullptr) returned = returned && beams.range[i] * ahead >= limits.depth->nearest;
+    if (limits.depth != nullptr) returned = returned && exact * ahead >= limits.depth->nearest;
     const double outcome = chance ? choice(first + i) : 1.0;
     if (returned && dim) {
-      const double share = s.world.reflectivity[hit] * beams.cosine[i] * beams.power[i];
+      const double share = reflectivity[hit] * cosines[i] * powers[i];
       const bool plain = outcome >= randoms;  // then the rest of the draw serves as well as another one
-      const double draw = plain ? (outcome - randoms) / (1.0 - randoms) : details.uniform(4 * (first + i));
-      returned = detected(beams.range[i], share, draw);
+      const double draw = plain ? (outcome - randoms) * per_plain : details.uniform(4 * (first + i));
+      returned = detected(exact, share, draw);
     }
-    double range = limits.farthest;
+    double range = farthest;
     if (returned) {
-      const double exact = beams.range[i], grown = errors.std_per_meter * exact;
+      const double grown = growth * exact;
       const double along = limits.depth == nullptr ? 0.0 : limits.depth->sigma(exact * ahead) / ahead;
-      const double sigma = std::sqrt(limits.std * limits.std + grown * grown + along * along);
+      const double sigma = std::sqrt(variance + grown * grown + along * along);
       range = std::max(0.0, scale * exact + bias);
-      if (sigma > 0.0) range = std::max(0.0, range + s.noise() * sigma * normal(first_draw + i));
+      if (sigma > 0.0) range = std::max(0.0, range + noise * sigma * normal(first_draw + i));
     }
-    if (outcome < errors.dropout) {
-      returned = false;
-    } else if (outcome < shorts) {
-      if (returned) range = cut_short(errors.short_rate, range, details.uniform(4 * (first + i) + 1)), hit = -1;
-    } else if (outcome < randoms) {
-      const double share = details.uniform(4 * (first + i) + 1);
-      range = limits.nearest + share * (limits.farthest - limits.nearest), hit = -1, returned = true;
+    if (outcome < randoms) {
+      if (outcome < dropout) {
+        returned = false;
+      } else if (outcome < shorts) {
+        if (returned) range = cut_short(errors.short_rate, range, details.uniform(4 * (first + i) + 1)), hit = -1;
+      } else {
+        range = nearest + details.uniform(4 * (first + i) + 1) * (farthest - nearest), hit = -1, returned = true;
+      }
     }
-    returned = returned && !is_blind(errors, s.mount.angle[i]);
+    if (blind) returned = returned && !is_blind(errors, s.mount.angle[i]);
     if (returned) range = rounded(errors, range);
-    s.valid[i] = returned && range >= limits.nearest && range <= limits.farthest;
-    s.ranges[i] = returned ? clip(range, limits.nearest, limits.farthest) : limits.farthest;
-    s.hits[i] = returned ? hit : -1;
+    valid[i] = returned && range >= nearest && range <= farthest;
+    ranges[i] = returned ? clip(range, nearest, farthest) : farthest;
+    hits[i] = returned ? hit : -1;
   }
 }
 

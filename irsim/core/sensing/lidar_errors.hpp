@@ -70,7 +70,8 @@ void follow_light(const Sensing& sensing, const Fan& fan, Surface& surface);
 ///
 /// Args:
 ///   fan: The scan without errors, cast already.
-///   first_draw: Draw of the range noise of beam 0, as of a lidar without further errors.
+///   first_draw: Draw of the range noise of beam 0, which has the word of the draw of a lidar without further errors,
+///     but is another number.
 void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, const Sensing& sensing, const Fan& fan,
                        std::uint64_t first_draw);
 

@@ -9,12 +9,12 @@ namespace {
 constexpr double kOnEdge = 1e-9;  // offset of a hit from the edge that it is on, relative to the coordinates
 constexpr double kStair = 4.0;    // cells between the hits of neighboring beams that are taken for one wall
 
+double slack(Vec2 at) { return kOnEdge * (1.0 + std::fabs(at.x) + std::fabs(at.y)); }
+
 Vec2 normal_to(Vec2 along) {
   const double length = norm(along);
   return length > 0.0 ? Vec2{along.y, -along.x} * (1.0 / length) : Vec2{1.0, 0.0};
 }
-
-double distance_to(Vec2 p, Vec2 a, Vec2 b) { return norm(p - nearest_on_segment(a, b, p)); }
 
 }  // namespace
 
@@ -22,12 +22,12 @@ Vec2 Surface::normal(const Fan& fan, int i) {
   const int object = fan.hit(i);
   const Vec2 at = fan.end(i);
   if (object == object_) {
-    const double slack = kOnEdge * (1.0 + std::fabs(at.x) + std::fabs(at.y));
     const double way = dot(at - from_, along_);
-    if (std::fabs(dot(at - from_, normal_)) <= slack && way >= 0.0 && way <= squared(along_)) return normal_;
+    if (std::fabs(dot(at - from_, normal_)) <= slack(at) && way >= 0.0 && way <= squared(along_)) return normal_;
   }
   const Footprint body = sensing_.footprint(object);
   object_ = -1;
+  const double on_edge = slack(at) * slack(at);
   double least = kInfinity;
   Vec2 out{1.0, 0.0};
   for (int part = 0; part < body.count; ++part) {
@@ -36,18 +36,17 @@ Vec2 Surface::normal(const Fan& fan, int i) {
     if (p.cells != nullptr) return object_ = -1, normal_of_cells(*p.cells, fan, i);
     if (p.kind == Kind::circle) {
       const Vec2 arm = at - *vertices;
-      const double length = norm(arm), away = std::fabs(length - p.radius);
+      const double length = norm(arm), away = (length - p.radius) * (length - p.radius);
       if (away < least) least = away, object_ = -1, out = length > 0.0 ? arm * (1.0 / length) : out;
-      continue;
     }
-    for (int k = 0; k < p.last - p.first; ++k) {
-      const double away = distance_to(at, vertices[k], vertices[k + 1]);
+    for (int k = 0; k < p.last - p.first && least > on_edge; ++k) {
+      const double away = squared(at - nearest_on_segment(vertices[k], vertices[k + 1], at));
       if (!(away < least)) continue;
       least = away, object_ = object, from_ = vertices[k], along_ = vertices[k + 1] - vertices[k];
-      out = normal_ = normal_to(along_);
     }
+    if (least <= on_edge) break;
   }
-  return out;
+  return object_ < 0 ? out : normal_ = normal_to(along_);
 }
 
 Vec2 Surface::normal_of_cells(const OccupancyGrid& grid, const Fan& fan, int i) const {

@@ -69,10 +69,11 @@ inline void imu(const ImuOptions& o, const Sensing& s) {
   place[0] = at.x, place[1] = at.y, velocity[0] = now.x, velocity[1] = now.y;
   for (int k = 0; k < 3; ++k) drift[k] = (k == 0 ? gyro : accel).next(drift[k], dt, shift[k]);
   // Both velocities are means over a step, so their difference is the acceleration at the time between the steps.
-  const double factor = s.noise(), turned = factor * o.misalignment_std * episode.normal(5);
+  const auto biases = episode.normals(0), axes = episode.normals(1), scales = episode.normals(2);
+  const double factor = s.noise(), turned = factor * o.misalignment_std * axes[1];
   const Vec2 true_accel = unrotate(change, unit(theta_before + o.offset[2] + turned));
-  const double lean_ahead = std::sin(factor * o.tilt_std * episode.normal(6)),
-               lean_aside = std::sin(factor * o.tilt_std * episode.normal(7));
+  const double lean_ahead = std::sin(factor * o.tilt_std * axes[2]),
+               lean_aside = std::sin(factor * o.tilt_std * axes[3]);
   double exact[] = {travel.turn / dt, true_accel.x + kGravity * lean_ahead, true_accel.y + kGravity * lean_aside};
   const double steps = felt.add(exact, s.measures());
   if (!s.measures()) return;
@@ -80,8 +81,8 @@ inline void imu(const ImuOptions& o, const Sensing& s) {
   const double spread = factor / std::sqrt(steps * dt);
   for (int k = 0; k < 3; ++k) {
     const bool turns = k == 0;
-    const double scale = 1.0 + factor * (turns ? o.gyro_scale_std : o.accel_scale_std) * episode.normal(8 + k);
-    const double bias = factor * (turns ? o.gyro_bias_std : o.accel_bias_std) * episode.normal(k);
+    const double scale = 1.0 + factor * (turns ? o.gyro_scale_std : o.accel_scale_std) * scales[k];
+    const double bias = factor * (turns ? o.gyro_bias_std : o.accel_bias_std) * biases[k];
     const double value =
         scale * exact[k] + bias + factor * drift[k] + (turns ? o.gyro_noise : o.accel_noise) * spread * noise[k];
     s.readings[k] =

@@ -56,11 +56,11 @@ inline void odometry(const OdometryOptions& o, const Sensing& s) {
     std::fill_n(s.readings + 3, 5, 0.0);
     return;
   }
-  const Draws episode = s.draws(1);
+  const auto episode = s.draws(1).normals(0);
   const double factor = s.noise();
-  const double unequal = 1.0 + o.diameter_error + factor * o.diameter_std * episode.normal(0);
-  const double track = o.track * (1.0 + o.track_error + factor * o.track_std * episode.normal(1));
-  const double scale = 1.0 + o.scale_error + factor * o.scale_std * episode.normal(2);
+  const double unequal = 1.0 + o.diameter_error + factor * o.diameter_std * episode[0];
+  const double track = o.track * (1.0 + o.track_error + factor * o.track_std * episode[1]);
+  const double scale = 1.0 + o.scale_error + factor * o.scale_std * episode[2];
   const double radius[] = {2.0 * scale * o.wheel_radius / (1.0 + unequal),
                            2.0 * unequal * scale * o.wheel_radius / (1.0 + unequal)};
   double rolled[2];  // as believed [m]
