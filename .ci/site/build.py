@@ -22,6 +22,7 @@ from gallery import gallery_pages
 from head import lighter
 from language import language_pages, whereabouts
 from mirror import FOLDERS, GUIDES, LISTED, files_of, mirrored, rewritten
+from models import model_pages, with_models
 from pages import ROOT, Page, contents, headed, link, once, summary_of
 from python_api import python_pages
 from redirects import STUB, write_stubs
@@ -66,8 +67,10 @@ def write_source(folder: Path) -> list[Page]:
         tool_pages(),
         python_pages(),
         suite_pages(where),
+        model_pages(where, folder / "pictures" / "realism"),
     ):
         pages += part
+    pages = with_models(pages)
     for page in pages:
         target = folder / f"{page.path}.md"
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -79,7 +82,7 @@ def write_source(folder: Path) -> list[Page]:
     (folder / "schema").mkdir(exist_ok=True)
     for path in sorted((ROOT / "schema").glob("*.json")):
         shutil.copyfile(path, folder / "schema" / path.name)
-    (folder / "pictures").mkdir()
+    (folder / "pictures").mkdir(exist_ok=True)
     shutil.copyfile(ROOT / ".github" / "crossing.gif", folder / "pictures" / "crossing.gif")
     for name in templates.names():
         shutil.copyfile(templates.picture_file(name), folder / "pictures" / f"template-{name}.png")
@@ -102,8 +105,8 @@ def _by_hand() -> Iterator[Page]:
             shown += f"\n## Intended differences\n\n{table[1]}\n"
         twin = shown
         if path == "index":
-            tops = ("start/index", "guides/index", "gallery/index", "reference/index", "suites/index")
-            tops += ("bridges/index", "evals/index", "project/index")
+            tops = ("start/index", "guides/index", "gallery/index", "reference/index", "realism/index")
+            tops += ("suites/index", "bridges/index", "evals/index", "project/index")
             shown += "\n" + contents(tops, hidden=True)
         yield Page(path, shown, twin, title[1], summary_of(text))
 
@@ -250,5 +253,6 @@ if __name__ == "__main__":
     parser.add_argument("out", type=Path, help="folder that gets source/ and html/")
     parser.add_argument("--previous", type=Path, help="an older site, whose addresses shall lead on")
     given = parser.parse_args()
+    sys.path.append(str(ROOT))  # plots of models use estimators of the tests
     build(given.out.resolve(), previous=given.previous)
     print(f"the site is in {given.out / 'html'}")

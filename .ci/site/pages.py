@@ -107,10 +107,11 @@ def contents(pages: Iterable[str], *, caption: str = "", depth: int = 1, hidden:
 
 
 def summary_of(text: str) -> str:
-    """First sentence of a Markdown text, without its title and its links."""
+    """First sentence of a Markdown text that is in no title, list, table or block, without its links."""
     body = re.sub(
-        r"\A---\n.*?\n---\n|<!--.*?-->|^#.*$|^!\[.*$|```.*?```|^[|<].*$", "", text, flags=re.DOTALL | re.MULTILINE
+        r"\A---\n.*?\n---\n|<!--.*?-->|```.*?```|^(?:#|!\[|\||<)[^\n]*$", "", text, flags=re.DOTALL | re.MULTILINE
     )
-    first = next((part for part in re.split(r"\n\s*\n", body.strip()) if part.strip()), "")
+    parts = [part.strip() for part in re.split(r"\n\s*\n", body)]
+    first = next((part for part in parts if part and not re.match(r"-|\d+\.", part)), "")
     words = re.sub(r"!?\[([^]]*)\]\([^)]*\)", r"\1", " ".join(first.split()))
-    return re.split(r"(?<=[.!?:])\s", words)[0]
+    return re.split(r"(?<=[.!?])\s", words)[0]

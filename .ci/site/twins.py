@@ -12,6 +12,7 @@ PARTS = {
     "start": "Start",
     "skills": "Guides",
     "reference": "Reference",
+    "realism": "Models of realism",
     "gallery": "Templates",
     "suites": "Suites",
     "evals": "Evaluating agents",

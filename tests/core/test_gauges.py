@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import irsim._core as core
+from tests.core.estimators import allan, umbmark
 from tests.core.worlds import DRIVES, PI, command, polygon, robot, scene
 
 ODOMETRY: dict[str, Any] = {
@@ -100,18 +101,10 @@ def square_errors(clockwise: bool, **errors: Any) -> np.ndarray:
 
 
 def test_umbmark_finds_the_systematic_errors() -> None:
-    """Borenstein and Feng 1996, equations 3.9 to 3.21, on the ends of both squares."""
     unequal, track = 0.003, 0.01
-    length, base = 4.0, 0.5
     errors = {"diameter_error": unequal, "track_error": track}
     clockwise, counter = square_errors(True, **errors), square_errors(False, **errors)
-    # Ends relative to the start; x and y of both as measured (true minus believed).
-    x_cw, x_ccw = clockwise[0], counter[0]
-    alpha = (x_cw + x_ccw) / (-4 * length)
-    beta = (x_cw - x_ccw) / (-4 * length)
-    radius = length / 2 / math.sin(beta / 2)
-    found_unequal = (radius + base / 2) / (radius - base / 2)
-    found_track = (PI / 2) / (PI / 2 - alpha)
+    found_unequal, found_track = umbmark(clockwise[0], counter[0], length=4.0, track=0.5)
     assert found_unequal == pytest.approx(1 + unequal, abs=2e-3)
     assert found_track == pytest.approx(1 + track, abs=2e-3)
 
@@ -163,16 +156,6 @@ def test_an_imu_feels_that_a_robot_sets_off() -> None:
     world, state = carrier(imu(), dt=0.1)
     readings = drive(world, state, (1.0, 0.0), 5)
     assert readings[:, 1] == pytest.approx([10.0, 0, 0, 0, 0], abs=1e-9)
-
-
-def allan(values: np.ndarray, dt: float, groups: list[int]) -> np.ndarray:
-    """Overlapping Allan deviation at some cluster sizes."""
-    angle = np.concatenate([[0.0], np.cumsum(values) * dt])
-    out = []
-    for m in groups:
-        second = angle[2 * m :] - 2 * angle[m:-m] + angle[: -2 * m]
-        out.append(math.sqrt(float(np.mean(second**2)) / (2 * (m * dt) ** 2)))
-    return np.array(out)
 
 
 def readings_at_rest(sensor: Any, dt: float, steps: int) -> np.ndarray:

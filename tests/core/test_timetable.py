@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import irsim._core as core
+from tests.core.estimators import allan
 from tests.core.test_cones import sonar
-from tests.core.test_gauges import ALL, allan, imu, odometry, place
+from tests.core.test_gauges import ALL, imu, odometry, place
 from tests.core.test_perception import detector, mover
 from tests.core.worlds import DRIVES, command, fmcw, lidar, obstacle, rectangle, robot, scene
 

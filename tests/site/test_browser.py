@@ -17,7 +17,8 @@ PROBLEMS = ("error", "warning")
 PAGES = (
     "index", "start/robotics", "start/from-ir-sim", "gallery/index", "gallery/crossing", "reference/index",
     "reference/behavior/orca", "reference/codes", "reference/commands/run", "reference/tools", "reference/python/irsim",
-    "skills/irsim-scenario/SKILL", "skills/irsim-benchmark/results/referee", "suites/index", "CHANGELOG", "search",
+    "skills/irsim-scenario/SKILL", "skills/irsim-benchmark/results/referee", "realism/index", "realism/imu",
+    "realism/sweep", "suites/index", "CHANGELOG", "search",
 )  # fmt: skip
 
 

@@ -34,7 +34,7 @@ html_theme_options = {
     "navigation_depth": 3,
     "show_nav_level": 1,
     "collapse_navigation": True,
-    "header_links_before_dropdown": 8,
+    "header_links_before_dropdown": 9,
     "navbar_align": "left",
     "navbar_end": ["version-switcher", "theme-switcher"],
     "footer_start": ["footer"],

@@ -1,0 +1,94 @@
+"""What a page shows of a model: simulated values beside its law, and one measured number with its tolerance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+__all__ = ["Curve", "Validation"]
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Points or a line of a plot.
+
+    Attributes:
+        label: Its name in the legend; empty for none.
+        x, y: (K,) coordinates.
+        tone: Number of its colour; what belongs together has the same.
+        faint: Whether it is only there to compare with, and drawn dashed.
+    """
+
+    label: str
+    x: ArrayLike
+    y: ArrayLike
+    tone: int = 0
+    faint: bool = False
+
+
+@dataclass(frozen=True)
+class Validation:
+    """A model beside its law.
+
+    Attributes:
+        x, y: What the axes show, with unit.
+        points: What was simulated.
+        lines: What the law says.
+        quantity: The measured quantity, as the subject of a sentence.
+        measured: Its value in the simulation.
+        expected: Its value by the law.
+        tolerance: Largest difference of both that passes.
+        unit: Unit of the three; empty for a pure number.
+        setup: What was simulated, as a sentence.
+        paths: Whether the plot shows ways in the plane, in which both axes have the same scale.
+        logarithmic: Axes that are logarithmic: ``x``, ``y``, ``xy`` or none.
+    """
+
+    x: str
+    y: str
+    points: tuple[Curve, ...]
+    lines: tuple[Curve, ...]
+    quantity: str
+    measured: float
+    expected: float
+    tolerance: float
+    unit: str
+    setup: str
+    paths: bool = False
+    logarithmic: str = ""
+
+    @property
+    def passes(self) -> bool:
+        """Whether the measured value is within the tolerance."""
+        return abs(self.measured - self.expected) <= self.tolerance
+
+    def shown(self, value: float) -> str:
+        """A value with its unit, and with one digit more than the tolerance has, at most six."""
+        digits = min(6, max(0, 1 - math.floor(math.log10(self.tolerance))))
+        return self._with_unit(f"{value:.{digits}f}")
+
+    @property
+    def margin(self) -> str:
+        """The tolerance with its unit."""
+        value = f"{self.tolerance:.3g}"
+        if "e" in value:
+            mantissa, _, exponent = value.partition("e")
+            power = f"10{str(int(exponent)).translate(_RAISED)}"
+            value = power if mantissa == "1" else f"{mantissa} · {power}"
+        return self._with_unit(f"± {value}")
+
+    def _with_unit(self, value: str) -> str:
+        """A number, whose minus is as long as a plus, in one line with its unit."""
+        return f"{value} {self.unit}".rstrip().replace(" ", "\N{NO-BREAK SPACE}").replace("-", "\N{MINUS SIGN}")
+
+    @property
+    def caption(self) -> str:
+        """What the plot shows and what was measured, in sentences."""
+        return (
+            f"{self.setup} {self.quantity}: measured {self.shown(self.measured)}, by the equation "
+            f"{self.shown(self.expected)}, tolerance {self.margin}."
+        )
