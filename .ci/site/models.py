@@ -82,16 +82,19 @@ def model_pages(where: Mapping[str, str], pictures: Path) -> Iterator[Page]:
     parts, twins = ["# Realism", _ABOUT], ["# Realism", _ABOUT]
     overview = link("All equations in one table", start, _OVERVIEW)
     parts.append(f"{overview}, with other simulators and costs.")
-    heads = ("model", "measured", "value", "by the equation", "tolerance")
+    heads = ("model", "what is measured", "simulated", "by the equation")
     for group, names in GROUPS.items():
         rows = []
         for name in names:
             one = every[name]
-            shown = (one.quantity, one.shown(one.measured), one.shown(one.expected), one.margin)
+            shown = (one.quantity, one.shown(one.measured), f"{one.shown(one.expected)} {one.margin}")
             rows.append((link(_title(name), start, f"realism/{name}"), *map(plain, shown)))
-        table = f"## {group}\n\n{plain_table(heads, rows).strip()}"
-        twins.append(table)
-        parts += [table, contents([f"realism/{name}" for name in names], caption=group, hidden=True)]
+        table = plain_table(heads, rows).strip()
+        twins.append(f"## {group}\n\n{table}")
+        parts += [
+            f'## {group}\n\n<div class="irsim-numbers">\n\n{table}\n\n</div>',
+            contents([f"realism/{name}" for name in names], caption=group, hidden=True),
+        ]
     yield Page(start, "\n\n".join(parts), "\n\n".join(twins), "Realism", _ABOUT.partition(": ")[0] + ".")
     for name, one in every.items():
         draw(one, pictures, name)

@@ -42,6 +42,6 @@ def validation(text: str) -> Validation:
         measured=math.sqrt(slope),
         expected=growth,
         tolerance=0.02 * growth,
-        unit="m per m",
+        unit="",
         setup=f"{errors.size:,} beams on a wall, each beside the same beam without errors.",
     )

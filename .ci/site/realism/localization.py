@@ -26,9 +26,9 @@ def validation(text: str) -> Validation:
     for _ in driven(batch, [SPEED, 0.0], round(DURATION / dt)):
         spread.append(float(np.std(readings(batch)[:, :2] - batch.pose[:, 0, :2])))
     time = dt * np.arange(1, len(spread) + 1)
-    apart = sensor.min_distance / SPEED  # time between corrections
+    apart = dt * math.ceil(sensor.min_distance / (SPEED * dt) - 1e-9)  # time between corrections, in whole steps
     kept = math.exp(-2 * apart / sensor.time)  # share of the variance of an error that the next correction has
-    chance = 1 - math.exp(-sensor.jumps_per_km * sensor.min_distance / 1000)
+    chance = 1 - math.exp(-sensor.jumps_per_km * SPEED * apart / 1000)
     corrections = np.floor(time / apart + 1e-6)
     jumps = chance * sensor.jump_std**2 * (1 - kept**corrections) / (1 - kept)
     law = np.sqrt(sensor.position_std**2 + jumps)

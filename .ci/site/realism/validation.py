@@ -67,8 +67,8 @@ class Validation:
         return abs(self.measured - self.expected) <= self.tolerance
 
     def shown(self, value: float) -> str:
-        """A value with its unit, and with one digit more than the tolerance has, at most six."""
-        digits = min(6, max(0, 1 - math.floor(math.log10(self.tolerance))))
+        """A value with its unit, and with one digit more than the tolerance has, at most five."""
+        digits = min(5, max(0, 1 - math.floor(math.log10(self.tolerance))))
         return self._with_unit(f"{value:.{digits}f}")
 
     @property
