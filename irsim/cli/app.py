@@ -25,6 +25,7 @@ COMMANDS = {
     "demo": "demo:demo",
     "templates": "templates:templates",
     "new": "new:new",
+    "studio": "studio:studio",
     "validate": "validate:validate",
     "diff": "diff:diff",
     "run": "run:run",
@@ -53,7 +54,7 @@ FILES_RULE = (
 )
 """How all commands treat a file that they are to write and that exists already."""
 PANELS = {
-    "Start": ("demo", "templates", "new"),
+    "Start": ("demo", "templates", "new", "studio"),
     "Scenarios": ("validate", "diff", "render", "describe", "schema"),
     "Runs": ("run", "inspect", "diff-runs", "audit", "replay", "export"),
     "Comparisons": ("benchmark", "suites", "policies"),

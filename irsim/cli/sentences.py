@@ -5,6 +5,7 @@ SENTENCES = {
     "demo": "Simulate a bundled scenario and write an animation of it to the current directory.",
     "templates": "List the bundled scenarios to start from.",
     "new": "Write a new scenario from a template and its parameters.",
+    "studio": "Open a page with the text and the scene of a scenario side by side: write, drag, check, run.",
     "validate": "Check scenario files, suites and tasks without running them; the exit code is 2 if any file is invalid.",
     "diff": "List the differences between two scenarios: keys of the files, and properties of the resulting worlds.",
     "run": "Simulate a scenario until every robot has arrived or collided, or the time limit is reached.",

@@ -16,10 +16,11 @@ from irsim.runs.replay.growing import GrowingRun
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["ALIVE", "BEGIN", "END", "ROWS", "Feed", "Follower", "frame"]
+__all__ = ["ALIVE", "BEGIN", "END", "FAILED", "RESULT", "ROWS", "Feed", "Follower", "frame"]
 
-BEGIN, ROWS, END, ALIVE = 1, 2, 3, 4
-"""Kinds of frames: a new run, further rows, how it ended, and one that only says that the server is there."""
+BEGIN, ROWS, END, ALIVE, RESULT, FAILED = 1, 2, 3, 4, 5, 6
+"""Kinds of frames: a new run, further rows, how it ended, one that only says that the server is there, and for the
+editor the result of a run as JSON, or why it failed."""
 _HEADER = struct.Struct("<IBI")
 _PERIOD_S = 0.05
 """Time between two frames of rows [s]."""

@@ -75,10 +75,10 @@ def stream(feed: Feed, number: Any) -> StreamingResponse:
                 wait = partial(feed.after, at, _ALIVE_S)
                 new = await anyio.to_thread.run_sync(wait, abandon_on_cancel=True)
                 at += len(new)
-                for one in new or [frame(ALIVE, at)]:
-                    yield one
                 if not new and feed.closed:
                     return
+                for one in new or [frame(ALIVE, at)]:
+                    yield one
         finally:
             feed.leave()
 

@@ -9,9 +9,10 @@ from pathlib import Path
 from irsim.common.pages import bundle, one_page
 from irsim.graphics.scene.theme import css_variables
 
-__all__ = ["page"]
+__all__ = ["WEB", "page"]
 
-_SOURCES = Path(__file__).with_name("web")
+WEB = Path(__file__).with_name("web")
+"""Folder of the page: its modules, its style sheet, and the markup of the player."""
 
 
 def page(data: bytes | None = None, *, title: str = "irsim replay", feed: Path | None = None) -> str:
@@ -23,6 +24,8 @@ def page(data: bytes | None = None, *, title: str = "irsim replay", feed: Path |
         feed: Folder with another ``main.js``, which starts the player with a run that the server of the page sends.
     """
     content = "" if data is None else base64.b64encode(data).decode()
-    script = bundle(*filter(None, [feed]), _SOURCES)
+    script = bundle(*filter(None, [feed]), WEB)
     rules = ["img-src data:", *(["connect-src 'self'"] if feed else [])]
-    return one_page(_SOURCES, script, *rules, variables=css_variables(), title=html.escape(title), data=content)
+    player = (WEB / "player.html").read_text(encoding="utf-8")
+    parts = {"title": html.escape(title), "player": player, "data": content}
+    return one_page(WEB, script, *rules, variables=css_variables(), **parts)

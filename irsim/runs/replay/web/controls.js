@@ -11,6 +11,7 @@ export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
 const SWITCHES = { f: "follow", l: "lidar", t: "trails", g: "goals", n: "names", b: "belief" };
 const ZOOM = 1.3, CLICK = 4; // pixels a click may move
 const MANY = 10; // steps
+const TYPING = "select, textarea, [contenteditable], input:not([type=range])"; // where keys mean something else
 
 /** Have a speed in the list, in its place. */
 export function offerSpeed(speed) {
@@ -53,7 +54,7 @@ export function listen(player, actions) {
 
   function onKey(event) {
     const { key, target } = event;
-    if (!player.run || event.ctrlKey || event.altKey || event.metaKey || $("keys").open || target.tagName === "SELECT") return;
+    if (!player.run || event.ctrlKey || event.altKey || event.metaKey || $("keys").open || target.closest?.(TYPING)) return;
     if (key === " " && target.tagName === "BUTTON") return;
     const many = event.shiftKey ? MANY : 1, { at } = player.shown, low = key.toLowerCase();
     const done = {

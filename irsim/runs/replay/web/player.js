@@ -29,6 +29,7 @@ export const player = {
   frame: 0,
   before: 0,
   wanted: null, // a row that is not simulated yet
+  over: null, // draws on top of a frame, with its context
   ahead: null, // is called with the number of steps that are wanted beyond the last one
 };
 
@@ -55,6 +56,7 @@ function onFrame(now) {
   }
   const most = player.playing ? POINTS.playing : POINTS.resting;
   const whole = drawFrame($("view").getContext("2d"), player.drawing, run, shown, camera, player.colors, ratio(), most);
+  player.over?.($("view").getContext("2d"), ratio());
   showMoment(player);
   if (player.pointer) showTip(player);
   const waits = run.growing && player.seconds >= run.time[run.rows - 1];
@@ -150,20 +152,24 @@ function measure() {
   onFrame(performance.now());
 }
 
-export async function show(bytes) {
-  const run = makeRun(await unpack(bytes)), { shown } = player;
+/** Show a run from its start on; `keep` leaves the view and the choice of a robot as they are. */
+export async function show(bytes, keep = false) {
+  const run = makeRun(await unpack(bytes)), { shown } = player, chosen = player.run?.objects[shown.robot]?.name;
   player.run = run;
   player.playing = false;
   player.drawing = makeDrawing();
-  player.camera = makeCamera(run.head.world);
+  if (!keep) player.camera = makeCamera(run.head.world);
+  else if (String(player.camera.world) !== String(run.head.world)) Object.assign(player.camera, { world: run.head.world, fitted: true });
   const first = run.robots.find((index) => run.lidars.has(index)) ?? run.robots[0] ?? -1;
-  Object.assign(shown, { at: 0, follow: false, robot: first, names: crowding(run) < 2 });
+  const again = keep ? run.objects.findIndex(({ name }) => name === chosen) : -1;
+  Object.assign(shown, { at: 0, follow: false, robot: again < 0 ? first : again });
+  if (!keep) shown.names = crowding(run) < 2;
   fillPanel(player, actions.goToEvent);
   const length = run.time[run.rows - 1];
   actions.setSpeed(run.head.speed ?? SPEEDS.find((speed) => speed >= 1 && length / speed <= LONG) ?? SPEEDS.at(-1));
   say("", true);
   measure();
-  fit(player.camera);
+  if (player.camera.fitted) fit(player.camera);
   showChoices(player);
   play(false);
   seek(0);

@@ -1,0 +1,73 @@
+"""``irsim studio``: write, see and run scenarios in the browser."""
+
+from __future__ import annotations
+
+import os
+import time
+import webbrowser
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from irsim.bundled import templates
+from irsim.cli.output import console
+from irsim.common.screen import has_screen
+from irsim.diagnostics.errors import InputError
+
+__all__ = ["studio"]
+
+_LOOK_S = 0.5
+
+
+def studio(
+    what: Annotated[
+        str | None,
+        typer.Argument(metavar="[FILE|TEMPLATE]", help="The scenario to open. Default: the page offers them."),
+    ] = None,
+    port: Annotated[
+        int, typer.Option("--port", metavar="N", min=0, max=65535, help="Port of the page. Default: a free one.")
+    ] = 0,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Print the address only, and open no browser.")
+    ] = False,
+) -> None:
+    """Open a page with the text and the scene of a scenario side by side: write, drag, check, run.
+
+    It reads and writes scenarios in the current directory only, or in that of FILE, and serves this machine only.
+    """
+    from irsim.studio.studio import Studio
+
+    root, first = _place(what)
+    made = Studio(root, port, first)
+    try:
+        shown = console()
+        shown.print(f"studio: {made.address}", soft_wrap=True, highlight=False)
+        shown.print(
+            f"It reads and writes scenarios in {made.files.root}; Ctrl-C ends it.", soft_wrap=True, highlight=False
+        )
+        if not no_browser and ("BROWSER" in os.environ or has_screen()):
+            webbrowser.open(made.address)
+        while True:
+            time.sleep(_LOOK_S)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        made.close()
+
+
+def _place(what: str | None) -> tuple[Path, str | None]:
+    """The folder of the studio, and what the page opens first: the name of a file in it, or of a template."""
+    here = Path.cwd()
+    if what is None:
+        return here, None
+    file = Path(what)
+    if file.is_file():
+        inside = file.resolve().is_relative_to(here.resolve())
+        root = here if inside else file.resolve().parent
+        return root, file.resolve().relative_to(root.resolve()).as_posix()
+    if what in templates.names():
+        return here, what
+    near = templates.meant(what)
+    fix = f"irsim studio {near}" if near else "irsim templates lists the templates; name a file that exists, or none"
+    raise InputError(f"'{what}' is neither a file nor a template", fix, where="what")

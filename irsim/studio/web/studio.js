@@ -1,0 +1,235 @@
+// The studio: the text and the scene of a scenario side by side, kept equal; runs are played where the scene is.
+
+import { $, element } from "./dom.js";
+import { ask, BEGIN, END, enter, FAILED, receive, RESULT, ROWS } from "./feed.js";
+import { actions, begin, extend, finish, player, say, show } from "./player.js";
+import { drawChosen, listenToScene, scene } from "./scene.js";
+import { makeText } from "./text.js";
+
+const WAIT = 100; // milliseconds without a key until the text is checked
+const NEW = {
+  robot: { kinematics: { name: "diff" }, shape: { name: "circle", radius: 0.2 }, behavior: { name: "dash" } },
+  circle: { shape: { name: "circle", radius: 0.4 } },
+  box: { shape: { name: "rectangle", length: 1, width: 0.6 } },
+};
+const file = { name: "scenario.yaml", mark: null, saved: "" };
+let version = 0, timer = 0, running = null, fits = true;
+
+const text = makeText($("editor"), {
+  changed: () => {
+    clearTimeout(timer);
+    timer = setTimeout(check, WAIT);
+    showSaved();
+  },
+  moved: (line) => {
+    const index = scene.places.findIndex(({ lines }) => lines[0] <= line && line <= lines[1]);
+    if (index >= 0) pick(index, false);
+  },
+  complete,
+  keys: [
+    { key: "Mod-s", run: () => (save(), true) },
+    { key: "Mod-Enter", run: () => (run(), true) },
+  ],
+});
+
+const seed = () => ($("seed").value === "" ? null : Number($("seed").value));
+const asked = () => ({ text: text.get(), name: file.name, seed: seed() });
+
+/** Check the text, and show the scene that it describes. */
+async function check() {
+  const mine = ++version, wanted = asked();
+  const answer = await ask("/check", wanted);
+  if (mine !== version) return; // the text has changed meanwhile
+  if (answer.why) {
+    state(answer.why, "error");
+    return;
+  }
+  const findings = answer.findings.map((finding) => ({ ...finding, mend: finding.edit && (() => mend(finding.edit)) }));
+  text.mark(findings);
+  list(findings);
+  state(answer.summary, findings.some(({ severity }) => severity === "error") || !answer.scene ? "error" : "good");
+  if (!answer.scene || scene.drag) return;
+  stop();
+  scene.places = answer.objects;
+  const chosen = scene.chosen;
+  await show(bytesOf(answer.scene), !fits);
+  fits = false;
+  pick(chosen < answer.objects.length ? chosen : -1, false);
+}
+
+const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+
+function state(words, kind) {
+  $("state").textContent = words;
+  $("state").className = kind;
+}
+
+function list(findings) {
+  $("problems").replaceChildren(...findings.map(({ severity, message, fix, line, mend: mended }) => {
+    const words = element("span", { textContent: message });
+    if (fix) words.append(element("small", { textContent: `fix: ${fix}` }));
+    const place = element("button", { type: "button", className: "line", title: `Go to line ${line ?? 1}` }, element("b", { textContent: severity }), element("small", { textContent: `line ${line ?? 1}` }));
+    place.addEventListener("click", () => text.goTo(line ?? 1));
+    const item = element("li", { className: severity }, place, words);
+    if (mended) {
+      const button = element("button", { type: "button", textContent: "Fix" });
+      button.addEventListener("click", mended);
+      item.append(button);
+    }
+    return item;
+  }));
+}
+
+function pathOf(written) {
+  return [...written.matchAll(/([^.[\]]+)|\[(\d+)\]/g)].map(([, key, index]) => (index === undefined ? key : Number(index)));
+}
+
+const mend = (found) => edit([{ ...found, path: pathOf(found.path) }]);
+
+/** Make edits in the text. */
+async function edit(edits) {
+  const answer = await ask("/edit", { text: text.get(), edits });
+  if (answer.why) {
+    say(`Not changed: ${answer.why}.`);
+    await check();
+    return false;
+  }
+  text.put(answer.text);
+  return true;
+}
+
+function pick(index, jump = true) {
+  scene.chosen = index;
+  const place = scene.places[index], object = player.run?.objects[index];
+  $("remove").disabled = $("duplicate").disabled = !place || place.path[0] === "world";
+  $("picked").textContent = place && object ? `${object.name}${place.why ? `: ${place.why}` : ""}` : "";
+  if (place && jump) text.goTo(place.lines[0], false);
+  actions.refresh();
+}
+
+async function add(kind) {
+  const { x, y } = player.camera, at = [Math.round(20 * x) / 20, Math.round(20 * y) / 20, 0];
+  const role = kind === "robot" ? "robot" : "obstacle", goal = kind === "robot" ? { goal: [at[0] + 2, at[1]] } : {};
+  if (await edit([{ action: "append", path: [role], value: { ...NEW[kind], state: at, ...goal } }])) say("", true);
+}
+
+async function duplicate() {
+  const { path } = scene.places[scene.chosen];
+  await edit([{ action: "duplicate", path }]);
+}
+
+async function remove() {
+  const { path } = scene.places[scene.chosen];
+  scene.chosen = -1;
+  await edit([{ action: "delete", path }]);
+}
+
+function stop() {
+  running?.abort();
+  running = null;
+  $("run").textContent = "Run";
+}
+
+/** Simulate the text; what is simulated is played at once. */
+async function run() {
+  if (running) {
+    stop();
+    check();
+    return;
+  }
+  const mine = running = new AbortController();
+  $("run").textContent = "Stop";
+  try {
+    await receive("/run", asked(), async (kind, number, content) => {
+      if (running !== mine) return;
+      if (kind === BEGIN) await show(content, true);
+      else if (kind === ROWS) await extend(content);
+      else if (kind === END) finish(JSON.parse(new TextDecoder().decode(content)));
+      else if (kind === RESULT) state(JSON.parse(new TextDecoder().decode(content)).summary, "good");
+      else if (kind === FAILED) state(new TextDecoder().decode(content), "error");
+    }, mine.signal);
+  } catch (problem) {
+    if (problem.name !== "AbortError") state(`The run was lost: ${problem.message}`, "error");
+  }
+  if (running === mine) stop();
+}
+
+async function complete() {
+  return null;
+}
+
+function showSaved() {
+  $("save").classList.toggle("changed", text.get() !== file.saved);
+}
+
+async function save() {
+  const name = $("filename").value.trim(), written = text.get();
+  const answer = await ask("/save", { name, text: written, mark: name === file.name ? file.mark : null });
+  if (answer.text !== undefined && confirm(`${answer.why}. Replace it with the text of this page?`)) {
+    const { mark } = await ask("/open", { name });
+    Object.assign(file, await ask("/save", { name, text: written, mark }), { name, saved: written });
+  } else if (answer.why) {
+    state(answer.why, "error");
+    return;
+  } else {
+    Object.assign(file, { name, mark: answer.mark, saved: written });
+  }
+  showSaved();
+  await offer();
+}
+
+async function open(choice) {
+  const answer = await ask("/open", choice);
+  if (answer.why) {
+    state(answer.why, "error");
+    return;
+  }
+  Object.assign(file, { name: answer.name, mark: answer.mark, saved: choice.template ? "" : answer.text });
+  $("filename").value = answer.name;
+  fits = true;
+  scene.chosen = -1;
+  text.open(answer.text);
+  showSaved();
+  await check();
+}
+
+async function offer() {
+  const { files, templates, first } = await ask("/files", {});
+  const group = (label, options) => element("optgroup", { label }, ...options);
+  $("file").replaceChildren(
+    element("option", { value: "", textContent: "Open …" }),
+    group("Files", files.map((name) => element("option", { value: `name ${name}`, textContent: name }))),
+    group("Templates", templates.map(({ name, title }) => element("option", { value: `template ${name}`, textContent: `${name}: ${title}` }))),
+  );
+  return { files, templates, first };
+}
+
+async function start() {
+  await enter();
+  const { files, templates, first } = await offer();
+  const isTemplate = templates.some(({ name }) => name === first) && !files.includes(first);
+  const choice = first ? (isTemplate ? { template: first } : { name: first }) : { template: "crossing" };
+  await open(choice);
+}
+
+$("file").addEventListener("change", () => {
+  const [kind, ...rest] = $("file").value.split(" ");
+  $("file").value = "";
+  const leave = text.get() === file.saved || confirm("The text has changes that are not saved. Open another one?");
+  if (kind && leave) open({ [kind]: rest.join(" ") });
+});
+$("save").addEventListener("click", save);
+$("run").addEventListener("click", run);
+$("seed").addEventListener("change", check);
+$("duplicate").addEventListener("click", duplicate);
+$("remove").addEventListener("click", remove);
+for (const button of document.querySelectorAll("[data-add]")) button.addEventListener("click", () => add(button.dataset.add));
+addEventListener("beforeunload", (event) => text.get() !== file.saved && file.saved && event.preventDefault());
+listenToScene({
+  edit,
+  picked: pick,
+  refuse: (index, why) => say(`${player.run.objects[index].name} cannot be dragged: ${why}.`),
+});
+player.over = drawChosen;
+begin();
+start().catch((problem) => say(`This page does not work: ${problem.message}`));

@@ -1,0 +1,81 @@
+"""The process that works for the studio: one job after the other from standard input, answers to standard output.
+
+A job is a line of JSON with a ``task`` and its arguments. The answer is a line with ``result`` or ``error``; a run has
+lines with a ``frame`` (base64) before it. The process ends with the studio.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from irsim.common.child import answers, limit, lines, write_line
+from irsim.diagnostics.errors import IrsimError
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+
+__all__ = ["main"]
+
+_MEMORY = 4 * 1024**3
+"""Address space [bytes]."""
+Put = Callable[[int, bytes], None]
+
+
+def main() -> None:
+    """Do jobs until standard input is closed."""
+    pipe, jobs = answers(), lines()
+    limit(memory=_MEMORY)
+
+    def put(kind: int, content: bytes) -> None:
+        write_line(pipe, {"frame": kind, "content": base64.b64encode(content).decode()})
+
+    while True:
+        job = json.loads(jobs.get())
+        try:
+            answer: dict[str, Any] = {"result": _TASKS[job.pop("task")](job, put)}
+        except IrsimError as error:
+            answer = {"error": str(error)}
+        except (MemoryError, RecursionError) as error:
+            answer = {"error": f"this is too large for the studio: {type(error).__name__}"}
+        write_line(pipe, answer)
+
+
+def _limits(job: Mapping[str, Any]) -> Limits:
+    """No files but those of the folder of the studio are read."""
+    return replace(DEFAULT_LIMITS, root=job["root"], bridges=False)
+
+
+def _warm(job: Mapping[str, Any], put: Put) -> None:
+    """Load what the first job would wait for."""
+    _check({**job, "text": "robot: {goal: [1, 1]}"}, put)
+
+
+def _check(job: Mapping[str, Any], put: Put) -> Any:
+    from irsim.studio.checking import check
+
+    return check(job["text"], job.get("path"), job.get("seed"), _limits(job))
+
+
+def _edit(job: Mapping[str, Any], put: Put) -> Any:
+    from irsim.studio.editing import NotEdited, edit
+
+    try:
+        return {"text": edit(job["text"], job["edits"], _limits(job))}
+    except NotEdited as error:
+        return {"why": str(error)}
+
+
+def _run(job: Mapping[str, Any], put: Put) -> Any:
+    from irsim.studio.running import run
+
+    return run(job, _limits(job), put)
+
+
+_TASKS: dict[str, Callable[[Mapping[str, Any], Put], Any]] = {
+    "warm": _warm,
+    "check": _check,
+    "edit": _edit,
+    "run": _run,
+}
