@@ -14,6 +14,7 @@ from irsim.bundled import templates
 from irsim.cli.output import console
 from irsim.common.screen import has_screen
 from irsim.diagnostics.errors import InputError
+from irsim.studio.studio import Studio
 
 __all__ = ["studio"]
 
@@ -26,7 +27,10 @@ def studio(
         typer.Argument(metavar="[FILE|TEMPLATE]", help="The scenario to open. Default: the page offers them."),
     ] = None,
     port: Annotated[
-        int, typer.Option("--port", metavar="N", min=0, max=65535, help="Port of the page. Default: a free one.")
+        int,
+        typer.Option(
+            "--port", metavar="N", min=0, max=65535, help="Port of the page on this machine. Default: a free one."
+        ),
     ] = 0,
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Print the address only, and open no browser.")
@@ -34,10 +38,8 @@ def studio(
 ) -> None:
     """Open a page with the text and the scene of a scenario side by side: write, drag, check, run.
 
-    It reads and writes scenarios in the current directory only, or in that of FILE, and serves this machine only.
+    It reads and writes scenarios in the current directory, or beside FILE, and serves only this machine.
     """
-    from irsim.studio.studio import Studio
-
     root, first = _place(what)
     made = Studio(root, port, first)
     try:
@@ -69,5 +71,5 @@ def _place(what: str | None) -> tuple[Path, str | None]:
     if what in templates.names():
         return here, what
     near = templates.meant(what)
-    fix = f"irsim studio {near}" if near else "irsim templates lists the templates; name a file that exists, or none"
+    fix = f"irsim studio {near}" if near else "irsim templates lists the templates; name one, or a file that exists"
     raise InputError(f"'{what}' is neither a file nor a template", fix, where="what")

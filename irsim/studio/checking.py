@@ -55,7 +55,7 @@ def check(text: str, path: str | None, seed: int | None, limits: Limits) -> dict
 
 
 def value_at(document: Document, path: Path) -> Any:
-    """The value at a path as written; None if there is none."""
+    """The value at a path as written; None if there is no such place."""
     value = document.data
     for part in path:
         try:

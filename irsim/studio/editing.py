@@ -32,10 +32,10 @@ def edit(text: str, edits: Sequence[Mapping[str, Any]], limits: Limits) -> str:
 
     Args:
         text: The text.
-        edits: Each has an ``action`` and a ``path`` into the scenario: those of :class:`irsim.diagnostics.Edit` with a
-            ``value``; ``numbers``, which replaces the first numbers of a list by ``value`` and leaves its length;
+        edits: Each has an ``action`` and a ``path`` into the scenario: the actions of :class:`irsim.diagnostics.Edit`
+            with a ``value``; ``numbers``, which replaces the first numbers of a list by ``value`` and leaves its length;
             ``append``, which puts ``value`` behind the entries of a role; and ``delete`` and ``duplicate``, which
-            take an entry that is no item of a list, too.
+            take an entry outside of a list, too.
         limits: Limits of the reader.
 
     Raises:
@@ -65,7 +65,7 @@ def _steps(document: Document, action: str, path: Path, value: Any) -> list[Edit
     if action == "duplicate":
         return _copied(document, path, written)
     if action not in _ACTIONS:
-        raise NotEdited(f"'{action}' is no edit")
+        raise NotEdited(f"there is no edit '{action}'")
     return [Edit(action, path, value)]
 
 

@@ -1,4 +1,4 @@
-"""What every request must be before the page's server answers it: meant for this server, from its page, and small."""
+"""Conditions of every request to the page's server: meant for this server, sent by its page, and small."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Guard:
         app: The application behind it.
         access: Who may ask.
         most: Path → size of the largest body of a request to it [bytes]; ``""`` for all others.
-        opened: Beginnings of paths that GET reads without a cookie: the page and its parts, which are everybody's.
+        opened: Beginnings of paths that GET reads without a cookie: the page and its parts.
     """
 
     def __init__(self, app: ASGIApp, access: Access, most: Mapping[str, int], opened: tuple[str, ...] = ()) -> None:

@@ -62,7 +62,7 @@ def stream(feed: Feed, number: Any) -> StreamingResponse:
     """The frames of a feed from a number on, until it is closed.
 
     Raises:
-        Refused: This is no number.
+        Refused: ``number`` is not a number of a frame.
     """
     if not _is_count(number):
         raise Refused(400, 'write from which frame on: {"from": 0}')

@@ -53,7 +53,7 @@ class Server:
 
     Args:
         port: Port to listen at; 0 chooses a free one.
-        routes: What it answers, besides ``POST /session``, which exchanges the token for a cookie.
+        routes: Its routes, besides ``POST /session``, which exchanges the token for a cookie.
         most: Path → size of the largest body of a request to it [bytes], where it is not 4 kB.
         opened: Beginnings of paths that are read without a cookie.
 

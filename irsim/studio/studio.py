@@ -16,6 +16,7 @@ from starlette.routing import Route
 from irsim.bundled import templates
 from irsim.graphics.scene.theme import css_variables
 from irsim.runs.replay.page import WEB as PLAYER
+from irsim.runs.replay.page import player
 from irsim.studio.feed import Feed
 from irsim.studio.live import stream
 from irsim.studio.server import Refused, Server, given
@@ -45,7 +46,7 @@ class Studio:
     Args:
         root: Folder of the files; nothing outside of it is read or written.
         port: Port of the server; 0 chooses a free one.
-        first: What the page opens: the name of a file, of a template, or None.
+        first: Name of the file or template that the page opens; None: it opens its own choice.
 
     Raises:
         InputError: The port cannot be used.
@@ -84,7 +85,7 @@ class Studio:
 
     async def _page(self, _: Request) -> Response:
         frame = (_WEB / "studio.html").read_text(encoding="utf-8")
-        page = frame.replace("{{player}}", (PLAYER / "player.html").read_text(encoding="utf-8"))
+        page = frame.replace("{{player}}", player())
         return HTMLResponse(page, headers={"Content-Security-Policy": _POLICY})
 
     def _list(self, _: dict[str, Any]) -> Any:
@@ -109,7 +110,7 @@ class Studio:
         return self._reader.ask(task, _CHECK_S, **self._job(wanted))
 
     def _job(self, wanted: dict[str, Any]) -> dict[str, Any]:
-        """What the page may say about a job; its text is that of a file of the folder, or of none."""
+        """A job as the page may describe it, for the text of a file of the folder, or for a new text."""
         _text(wanted, "text")
         job = {key: value for key, value in wanted.items() if key in _KEYS}
         name = wanted.get("name")

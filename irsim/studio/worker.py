@@ -15,6 +15,9 @@ from typing import Any
 from irsim.common.child import answers, limit, lines, write_line
 from irsim.diagnostics.errors import IrsimError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.studio.checking import check
+from irsim.studio.editing import NotEdited, edit
+from irsim.studio.running import run
 
 __all__ = ["main"]
 
@@ -43,7 +46,7 @@ def main() -> None:
 
 
 def _limits(job: Mapping[str, Any]) -> Limits:
-    """No files but those of the folder of the studio are read."""
+    """Limits of a job, which reads files in the folder of the studio only."""
     return replace(DEFAULT_LIMITS, root=job["root"], bridges=False)
 
 
@@ -53,14 +56,10 @@ def _warm(job: Mapping[str, Any], put: Put) -> None:
 
 
 def _check(job: Mapping[str, Any], put: Put) -> Any:
-    from irsim.studio.checking import check
-
     return check(job["text"], job.get("path"), job.get("seed"), _limits(job))
 
 
 def _edit(job: Mapping[str, Any], put: Put) -> Any:
-    from irsim.studio.editing import NotEdited, edit
-
     try:
         return {"text": edit(job["text"], job["edits"], _limits(job))}
     except NotEdited as error:
@@ -68,8 +67,6 @@ def _edit(job: Mapping[str, Any], put: Put) -> Any:
 
 
 def _run(job: Mapping[str, Any], put: Put) -> Any:
-    from irsim.studio.running import run
-
     return run(job, _limits(job), put)
 
 

@@ -18,7 +18,7 @@ __all__ = ["TooSlow", "Worker"]
 
 _ENVIRONMENT = {"MPLBACKEND": "Agg", **ONE_THREAD}
 _START_S = 20.0
-"""Time that starting a process may take, in addition to that of a job [s]."""
+"""Time that starting a process may take, in addition to the time of its job [s]."""
 
 
 class TooSlow(Exception):

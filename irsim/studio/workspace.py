@@ -9,6 +9,7 @@ from pathlib import Path
 
 from irsim.common.files import replace_bytes, write_new
 from irsim.common.hashing import digest
+from irsim.common.records import FileError, read_bytes
 from irsim.scenario.locate import why_outside
 
 __all__ = ["FileChanged", "FileRefused", "Workspace"]
@@ -56,7 +57,7 @@ class Workspace:
         """The text of a file, and a mark of it by which a later change is noticed.
 
         Raises:
-            FileRefused: It is no scenario file of this folder, or cannot be read.
+            FileRefused: This folder has no such scenario, or it cannot be read.
         """
         data = self._bytes(self._target(name))
         if data is None:
@@ -97,7 +98,7 @@ class Workspace:
         """The path of a file, which may not exist yet.
 
         Raises:
-            FileRefused: It leads out of the folder, or is no scenario.
+            FileRefused: It leads out of the folder, or does not end as scenarios do.
         """
         return str(self._target(name))
 
@@ -106,22 +107,18 @@ class Workspace:
         if wrong is not None:
             raise FileRefused(f"'{name}' {wrong}: the studio reads and writes only files in {self.root}")
         if not name.lower().endswith(_ENDINGS):
-            raise FileRefused(f"'{name}' is no scenario: the name of a scenario file ends with .yaml")
+            raise FileRefused(f"'{name}': the name of a scenario file ends with .yaml")
         if any(part.startswith(".") for part in Path(name).parts):
             raise FileRefused(f"'{name}' is hidden")
         return self.root / name
 
     def _bytes(self, target: Path) -> bytes | None:
-        try:
-            with target.open("rb") as file:
-                data = file.read(_MOST_BYTES + 1)
-        except FileNotFoundError:
+        if not target.exists():
             return None
-        except OSError as error:
-            raise FileRefused(f"'{target.name}' cannot be read: {error.strerror or error}") from None
-        if len(data) > _MOST_BYTES:
-            raise FileRefused(f"'{target.name}' is larger than {_MOST_BYTES:,} bytes")
-        return data
+        try:
+            return read_bytes(target, _MOST_BYTES)
+        except FileError as error:
+            raise FileRefused(f"'{target.name}' cannot be read: {error}") from None
 
     def _found(self) -> Iterator[str]:
         left, folders = _MOST_LOOKED, [self.root]

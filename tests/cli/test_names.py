@@ -37,6 +37,8 @@ MEANINGS = {
     "--perturb": "Let the seed change starts",
     "--policies": "behaviors|Behaviors",
     "--policy": "every robot",
+    "--port": "[Pp]ort of the page",
+    "--no-browser": "open no browser",
     "--radius": "^Radius of a pedestrian",
     "--resolution": "Side of a cell",
     "--resume": "Go on with the",

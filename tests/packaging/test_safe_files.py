@@ -27,6 +27,8 @@ KNOWN = {
     "irsim/learning/training/sarl/train.py": "weights_only, and whatever it raises is an error of the folder",
     "irsim/learning/workers/process.py": PEER,
     "irsim/rendering/saving.py": OWN,
+    "irsim/studio/worker.py": PEER,
+    "irsim/studio/workers.py": PEER,
     "irsim/runs/replay/drawing.py": OWN,
     "mcp_server/irsim_mcp/frames.py": "says which part of a message is not JSON",
     "mcp_server/irsim_mcp/job.py": PEER,

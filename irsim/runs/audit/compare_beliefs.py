@@ -35,7 +35,7 @@ def _events(artifact: Artifact, body: Body, kind: str) -> NDArray[np.bool_]:
 
 
 def on_last_goal(artifact: Artifact, body: Body) -> NDArray[np.bool_]:
-    """(T,) whether a body that goes by an estimate is judged by its last goal; never if it has none."""
+    """(T,) whether a body that goes by an estimate is judged by its last goal; never without goals."""
     if body.endless:
         return np.zeros(len(artifact.pose), dtype=bool)
     passed = np.cumsum(_events(artifact, body, "waypoint"))
@@ -48,7 +48,7 @@ def compare_beliefs(artifact: Artifact, report: Report) -> str:
     """Compare events and flags of belief with the distances of the reported poses to the recorded goals.
 
     Returns:
-        What is not checked, in words.
+        The part that is not checked, in words.
     """
     left_out, believers = dict[str, int](), 0
     for row, body in enumerate(artifact.bodies):

@@ -1,4 +1,4 @@
-"""What the ground of zones does to the wheels of a body in each step of a recorded run, without the engine."""
+"""Effects of the ground of zones on the wheels of a body, in each step of a recorded run, without the engine."""
 
 from __future__ import annotations
 

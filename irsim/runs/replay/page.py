@@ -9,7 +9,7 @@ from pathlib import Path
 from irsim.common.pages import bundle, one_page
 from irsim.graphics.scene.theme import css_variables
 
-__all__ = ["WEB", "page"]
+__all__ = ["WEB", "page", "player"]
 
 WEB = Path(__file__).with_name("web")
 """Folder of the page: its modules, its style sheet, and the markup of the player."""
@@ -26,6 +26,14 @@ def page(data: bytes | None = None, *, title: str = "irsim replay", feed: Path |
     content = "" if data is None else base64.b64encode(data).decode()
     script = bundle(*filter(None, [feed]), WEB)
     rules = ["img-src data:", *(["connect-src 'self'"] if feed else [])]
-    player = (WEB / "player.html").read_text(encoding="utf-8")
-    parts = {"title": html.escape(title), "player": player, "data": content}
-    return one_page(WEB, script, *rules, variables=css_variables(), **parts)
+    shown = html.escape(title)
+    return one_page(WEB, script, *rules, variables=css_variables(), title=shown, player=player(shown), data=content)
+
+
+def player(title: str = "") -> str:
+    """The markup of the player, with the head, the world, the panel and the timeline.
+
+    Args:
+        title: The HTML that its head says until a run is there.
+    """
+    return (WEB / "player.html").read_text(encoding="utf-8").replace("{{title}}", title)

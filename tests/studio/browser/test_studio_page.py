@@ -1,4 +1,4 @@
-"""The studio in headless Chromium, as somebody uses it who writes a scenario."""
+"""The studio in headless Chromium, as an author of scenarios uses it."""
 
 from __future__ import annotations
 
