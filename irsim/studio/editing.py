@@ -32,10 +32,10 @@ def edit(text: str, edits: Sequence[Mapping[str, Any]], limits: Limits) -> str:
 
     Args:
         text: The text.
-        edits: Each has an ``action`` and a ``path`` into the scenario: the actions of :class:`irsim.diagnostics.Edit`
-            with a ``value``; ``numbers``, which replaces the first numbers of a list by ``value`` and leaves its length;
-            ``append``, which puts ``value`` behind the entries of a role; and ``delete`` and ``duplicate``, which
-            take an entry outside of a list, too.
+        edits: Each has an ``action``, a ``path`` into the scenario and perhaps a ``value``. Actions are the ones of
+            :class:`irsim.diagnostics.Edit`; ``numbers``, which replaces the first numbers of a list and leaves its
+            length; ``append``, which puts a value behind the entries of a role; and ``delete`` and ``duplicate``,
+            which take an entry outside of a list, too.
         limits: Limits of the reader.
 
     Raises:

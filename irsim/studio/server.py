@@ -113,6 +113,7 @@ class Server:
         for connection in list(self._server.server_state.connections):
             connection.transport.abort()  # it reads too slowly, or its answer has no end
         await serving
+        await asyncio.sleep(0)  # in which connections that were aborted are closed
 
     async def _enter(self, request: Request) -> Response:
         entered = self.access.has_cookie(request.headers.getlist("cookie"))
