@@ -16,6 +16,7 @@ from irsim.common.child import answers, limit, lines, write_line
 from irsim.diagnostics.errors import IrsimError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.studio.checking import check
+from irsim.studio.completing import complete
 from irsim.studio.editing import NotEdited, edit
 from irsim.studio.running import run
 
@@ -59,6 +60,11 @@ def _check(job: Mapping[str, Any], put: Put) -> Any:
     return check(job["text"], job.get("path"), job.get("seed"), _limits(job))
 
 
+def _complete(job: Mapping[str, Any], put: Put) -> Any:
+    line, column = job.get("line"), job.get("column")
+    return complete(job["text"], line, column) if isinstance(line, int) and isinstance(column, int) else None
+
+
 def _edit(job: Mapping[str, Any], put: Put) -> Any:
     try:
         return {"text": edit(job["text"], job["edits"], _limits(job))}
@@ -73,6 +79,7 @@ def _run(job: Mapping[str, Any], put: Put) -> Any:
 _TASKS: dict[str, Callable[[Mapping[str, Any], Put], Any]] = {
     "warm": _warm,
     "check": _check,
+    "complete": _complete,
     "edit": _edit,
     "run": _run,
 }

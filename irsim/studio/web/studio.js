@@ -154,8 +154,14 @@ async function run() {
   if (running === mine) stop();
 }
 
-async function complete() {
-  return null;
+/** Words that fit at the cursor, for the editor: it asks after letters, and when the user does. */
+async function complete(context) {
+  const { number, from } = context.state.doc.lineAt(context.pos);
+  if (!context.explicit && !context.matchBefore(/[\w-]+/) && !/[:{,-]\s$/.test(context.state.sliceDoc(from, context.pos))) return null;
+  const answer = await ask("/complete", { text: text.get(), line: number, column: context.pos - from });
+  if (answer.why || !answer.options.length) return null;
+  const options = answer.options.map(({ label, apply, detail, info, kind }) => ({ label, apply, detail, type: kind, info: info || undefined }));
+  return { from: from + answer.column, options, filter: false };
 }
 
 function showSaved() {

@@ -117,8 +117,8 @@ def test_a_mistake_is_underlined_while_typing_and_mended_by_a_click(opened: Any)
     page.click(".cm-content")
     page.keyboard.press("Control+End")
     page.keyboard.type("  - {shape: {name: circle, radus: 0.2}, state: [8, 7]}")
-    until(page, "document.getElementById('state').className === 'error'")
     typed = text_of(page)
+    until(page, "document.querySelectorAll('#problems button:not(.line)').length === 1")
     [finding] = [one for one in irsim.validate(text=typed).findings if one.severity == "error"]
     assert finding.message in page.inner_text("#problems")
     assert page.locator(".cm-lintRange-error").inner_text() == "radus"
@@ -128,6 +128,19 @@ def test_a_mistake_is_underlined_while_typing_and_mended_by_a_click(opened: Any)
     page.click(".cm-content")
     page.keyboard.press("Control+z")
     becomes(page, typed)
+
+
+def test_words_are_completed_from_the_language(opened: Any) -> None:
+    page = opened
+    page.click(".cm-content")
+    page.keyboard.press("Control+End")
+    page.keyboard.type("  - {shape: {name: circle, rad")
+    page.wait_for_selector(".cm-tooltip-autocomplete")
+    assert page.inner_text(".cm-tooltip-autocomplete li >> nth=0").startswith("radius")
+    assert "m, default 0.2" in page.inner_text(".cm-tooltip-autocomplete li >> nth=0")
+    page.keyboard.press("Enter")
+    page.keyboard.type("0.7")
+    assert "{shape: {name: circle, radius: 0.7}}" in text_of(page)
 
 
 def test_what_is_run_is_played_and_an_edit_shows_the_scene_again(opened: Any) -> None:
