@@ -71,8 +71,11 @@ def _places(document: Document, record: ObjectRecord) -> dict[str, Any]:
     place: dict[str, Any] = {"path": list(record.path), "lines": _lines(document, record.path)}
     if record.is_terrain or not isinstance(entry, Mapping):
         return place | {"why": "a key of the world makes it"}
-    if entry.get("number", 1) != 1:
-        return place | {"why": f"it is one of {entry['number']} that one entry makes"}
+    state, number = entry.get("state"), entry.get("number", 1)
+    if number != 1:
+        if isinstance(state, list) and len(state) == number and all(isinstance(one, list) for one in state):
+            return place | {"pose": [*record.path, "state", record.index], "goals": []}
+        return place | {"why": f"it is one of {number} that one entry makes"}
     if "distribution" in entry:
         return place | {"why": "a distribution places it"}
     goals = []

@@ -90,3 +90,10 @@ def test_a_place_says_where_its_object_is_written() -> None:
     assert [place["why"] for place in check(many, None, None, DEFAULT_LIMITS)["objects"]] == [
         "it is one of 3 that one entry makes"
     ] * 3
+
+
+def test_each_of_several_objects_with_a_state_of_its_own_is_dragged_alone() -> None:
+    text = "robot:\n  - number: 2\n    state: [[1, 1, 0], [2.5, 2, 0]]   # both\n    goal: [9, 9]\n"
+    paths = [place["pose"] for place in check(text, None, None, DEFAULT_LIMITS)["objects"]]
+    assert paths == [["robot", 0, "state", 0], ["robot", 0, "state", 1]]
+    assert edited(text, action="numbers", path=paths[1], value=[3, 2]) == text.replace("[2.5, 2, 0]", "[3, 2, 0]")

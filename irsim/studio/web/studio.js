@@ -12,7 +12,7 @@ const NEW = {
   circle: { shape: { name: "circle", radius: 0.4 } },
   box: { shape: { name: "rectangle", length: 1, width: 0.6 } },
 };
-const file = { name: "scenario.yaml", mark: null, saved: "" };
+const file = { name: "scenario.yaml", mark: null, text: "" }; // its text as it was opened or saved; no mark: it is new
 let version = 0, timer = 0, running = null, fits = true;
 
 const text = makeText($("editor"), {
@@ -164,8 +164,10 @@ async function complete(context) {
   return { from: from + answer.column, options, filter: false };
 }
 
+const isChanged = () => text.get() !== file.text;
+
 function showSaved() {
-  $("save").classList.toggle("changed", text.get() !== file.saved);
+  $("save").classList.toggle("changed", isChanged() || file.mark === null);
 }
 
 async function save() {
@@ -173,12 +175,12 @@ async function save() {
   const answer = await ask("/save", { name, text: written, mark: name === file.name ? file.mark : null });
   if (answer.text !== undefined && confirm(`${answer.why}. Replace it with the text of this page?`)) {
     const { mark } = await ask("/open", { name });
-    Object.assign(file, await ask("/save", { name, text: written, mark }), { name, saved: written });
+    Object.assign(file, await ask("/save", { name, text: written, mark }), { name, text: written });
   } else if (answer.why) {
     state(answer.why, "error");
     return;
   } else {
-    Object.assign(file, { name, mark: answer.mark, saved: written });
+    Object.assign(file, { name, mark: answer.mark, text: written });
   }
   showSaved();
   await offer();
@@ -190,7 +192,7 @@ async function open(choice) {
     state(answer.why, "error");
     return;
   }
-  Object.assign(file, { name: answer.name, mark: answer.mark, saved: choice.template ? "" : answer.text });
+  Object.assign(file, { name: answer.name, mark: answer.mark, text: answer.text });
   $("filename").value = answer.name;
   fits = true;
   scene.chosen = -1;
@@ -221,7 +223,7 @@ async function start() {
 $("file").addEventListener("change", () => {
   const [kind, ...rest] = $("file").value.split(" ");
   $("file").value = "";
-  const leave = text.get() === file.saved || confirm("The text has changes that are not saved. Open another one?");
+  const leave = !isChanged() || confirm("The text has changes that are not saved. Open another one?");
   if (kind && leave) open({ [kind]: rest.join(" ") });
 });
 $("save").addEventListener("click", save);
@@ -230,7 +232,7 @@ $("seed").addEventListener("change", check);
 $("duplicate").addEventListener("click", duplicate);
 $("remove").addEventListener("click", remove);
 for (const button of document.querySelectorAll("[data-add]")) button.addEventListener("click", () => add(button.dataset.add));
-addEventListener("beforeunload", (event) => text.get() !== file.saved && file.saved && event.preventDefault());
+addEventListener("beforeunload", (event) => isChanged() && event.preventDefault());
 listenToScene({
   edit,
   picked: pick,
