@@ -227,6 +227,15 @@ def test_who_cannot_move_sideways_brakes_where_it_faces_a_wall() -> None:
         assert state.pose[0, 0] > 5.0, "and goes on along it"
 
 
+def test_who_faces_a_wall_within_its_margin_turns_away_by_little_and_goes_on() -> None:
+    for drive in ("diff", "steer", "angular"):
+        near = agent((0.0, 0.0, 0.03), (10, -0.5), drive, parts=[circle(0.3)])
+        world, state = scene(near, obstacle(parts=[rectangle(20.0, 0.2)], pose=[0.0, 0.45, 0.0]), mode=1)
+        core.advance(world, state, 100)
+        assert not state.collided[0], drive
+        assert state.pose[0, 0] > 5.0, drive
+
+
 # what it promises
 
 

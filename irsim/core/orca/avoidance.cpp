@@ -351,6 +351,8 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
     Turning turning = turning_for(world, state, row, squared(velocity - preferred) > same);
     // The heading may lead into a wall even if the wanted velocity does not.
     if (hard > 0) turning.max_forward = fastest_along(state.heading(row), all.planes.data(), hard);
+    // One that stands and may not roll ahead turns by any error: nothing else would ever free it.
+    if (turning.max_forward < kMinSpeed && squared(agent.velocity) < kMinSpeed * kMinSpeed) turning.tolerance = 0.0;
     if (car) {
       Vec3 control;
       const double ahead = std::min(norm(velocity), turning.max_forward);
