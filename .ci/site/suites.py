@@ -31,12 +31,13 @@ def suite_pages(where: Mapping[str, str]) -> Iterator[Page]:
     own = [page for page in results if page != readable]
     keys = answer.model_copy(update={"groups": {k: v for k, v in answer.groups.items() if k != "suites"}, "text": ""})
     kept = link("what was measured", _START, f"{_SKILL}/results/results")
+    ranks = link("ranks with ideal and with realistic sensing", _START, f"{_SKILL}/results/realistic_ranks")
     referees = link("page for referees", _START, readable)
     parts = [
         "# Suites",
         "A suite is a benchmark that can be cited: fixed scenarios, seeds, horizon, protocol and policies.",
         plain_table(("suite", "what it asks"), rows),
-        f"Results: {kept}, and a {referees} with each objection and the command that answers it.",
+        f"Results: {kept}, {ranks}, and a {referees} with each objection and the command that answers it.",
         section(keys, _START, "suites", where, title="A suite file of your own"),
         contents([f"suites/{name}" for name in names], caption="Suites", hidden=True),
         contents([readable, *own, f"{_SKILL}/guides/audit"], caption="Results", hidden=True),

@@ -10,7 +10,7 @@ from irsim.benchmarks.summary import counts_once, first_of_each, is_summary, pai
 from irsim.metrics.statistics import mcnemar
 from irsim.results.benchmark import BenchmarkRow, EpisodeRow, PolicyPair, PolicyRank
 
-__all__ = ["pairs_of", "ranks_of"]
+__all__ = ["lead", "pairs_of", "ranks_of"]
 
 _KEY = "success"
 """The metric by which policies are compared."""
@@ -78,7 +78,7 @@ def ranks_of(rows: Sequence[BenchmarkRow], pairs: Sequence[PolicyPair]) -> list[
             continue
         above = sum(rate > row.success.rate + 1e-12 for rate in rates)
         equal = sum(abs(rate - row.success.rate) <= 1e-12 for rate in rates)
-        ahead = [_lead(pair, row.behavior) for pair in pairs if pair.scenario == row.scenario]
+        ahead = [lead(pair, row.behavior) for pair in pairs if pair.scenario == row.scenario]
         low, high = 1 + ahead.count(-1), len(rates) - ahead.count(1)
         rank = above + (equal + 1) / 2
         low, high = (low, high) if any(place is not None for place in ahead) else (above + 1, above + equal)
@@ -86,7 +86,7 @@ def ranks_of(rows: Sequence[BenchmarkRow], pairs: Sequence[PolicyPair]) -> list[
     return result
 
 
-def _lead(pair: PolicyPair, behavior: str) -> int | None:
+def lead(pair: PolicyPair, behavior: str) -> int | None:
     """1 if a policy is better for sure than the other of a pair, -1 if worse, 0 if open; None if it is not in it.
 
     A difference without an interval is exact.

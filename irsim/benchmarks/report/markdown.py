@@ -39,6 +39,7 @@ _COLUMNS = (
 )  # fmt: skip
 """(key, heading) of the columns of every table."""
 _SOMETIMES = (
+    ("success_in_belief", "success in belief"),
     ("distance_to_human_min", "human [m]"), ("discomfort_ratio", "discomfort"),
     ("discomfort_min_dist", "discomfort [m]"),
     ("seen_ratio", "seen"), ("time_in_zone", "in zones [s]"), ("zone_crossings", "crossings of zones"),

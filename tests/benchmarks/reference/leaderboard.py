@@ -22,7 +22,18 @@ from irsim.scenario.behavior_override import parse_behavior
 from tests.benchmarks.reference.remarks import remark
 from tests.benchmarks.reference.write import PAGES, TABLES, episodes_of, kept_of
 
-__all__ = ["LEFT_OUT", "LEFT_OUT_OF_SUITES", "PAGE", "Standing", "leaderboard", "standings", "unlisted_policies"]
+__all__ = [
+    "LEFT_OUT",
+    "LEFT_OUT_OF_SUITES",
+    "PAGE",
+    "Standing",
+    "certain_of",
+    "in_points",
+    "in_words",
+    "leaderboard",
+    "standings",
+    "unlisted_policies",
+]
 
 PAGE = PAGES / "results.md"
 _ABOUT = """\
@@ -41,8 +52,9 @@ Rows are the ones over all scenarios of the page that each heading links, which 
 ([audit](../guides/audit.md)).
 
 *Knows* is what a policy knows besides its own state and goal, as `irsim policies` prints it. The simulator tells it
-exactly and at once; only `lidar` is read from a sensor, without noise. `+intent` is told, too, and not sensed: who has
-arrived, and who gives way by the same law. Policies of one class stand together, and the class of the best one is
+exactly and at once; only `lidar` is read from a sensor, without noise. How ranks change where poses, tracks and
+commands err: [realistic sensing](realistic_ranks.md). `+intent` is told, too, and not sensed: who has arrived, and who
+gives way by the same law. Policies of one class stand together, and the class of the best one is
 first: only they compete with equal means, and a lead over another class can be one of information. Where policies
 change places between suites, choose by the scenes that are like yours. One robot drives in {alone}, and its episode
 ends when it has arrived: both protocols give equal episodes there, and only `freeze` is listed.
@@ -67,8 +79,6 @@ LEFT_OUT = {
     "mixed": "it is several policies ([mixed_v2](mixed_v2.md))",
     "neupan": "it needs a package and a file of its authors",
     "process": "it is a program that the user brings",
-    "goal_lidar_noisy": "it was trained for a lidar that errs and an estimated pose, which these suites do not have "
-    "([realism](realism.md))",
     "rl_rvo_authors": "its weights are the authors' ([policies of the paper](policies_of_the_paper.md))",
 }
 """Policy that no table has -> why."""
@@ -134,7 +144,7 @@ def _negated(one: Estimate) -> Estimate:
 
 def leaderboard() -> str:
     """The page, of all suites v2 whose episodes are kept by policy."""
-    alone = sorted({table.suite for table in TABLES.values() if table.protocols == ("freeze",)})
+    alone = sorted({TABLES[name].suite for name in _tables() if TABLES[name].protocols == ("freeze",)})
     about = _ABOUT.format(alone=" and ".join([", ".join(alone[:-1]), alone[-1]]))
     parts = [about, *(part for name in _tables() for part in _section(name))]
     return "\n".join([*parts, "## Not here", "", _WHERE, *_left_out(), "", _people()])
@@ -187,7 +197,7 @@ def _row(protocol: str, one: Standing) -> str:
     success, collision, timeout = one.shares
     behind = "–"
     if one.behind is not None and one.behind.mean is not None:
-        behind = f"{100 * one.behind.mean:.1f} {_brackets(one.behind.low, one.behind.high)}"
+        behind = in_points(one.behind)
     cells = [protocol, one.knows, f"`{one.policy}`", str(one.episodes)]
     cells += [f"{100 * success.rate:.1f} {_brackets(success.low, success.high)}"]
     cells += [f"{100 * share.rate:.1f}" for share in (collision, timeout)]
@@ -199,9 +209,7 @@ def _lead(protocol: str, ranked: Sequence[Standing]) -> str:
     first, second = ranked[:2]
     level = [one.policy for one in ranked[1:] if one.behind is None or one.behind.high is None or one.behind.high >= 0]
     if level:
-        *most, last = [f"`{policy}`" for policy in level]
-        names = f"{', '.join(most)} and {last}" if most else last
-        return f"Under {protocol}, `{first.policy}` is first, but {names} may be as good."
+        return f"Under {protocol}, `{first.policy}` is first, but {in_words(level)} may be as good."
     assert second.behind is not None
     assert second.behind.mean is not None
     assert second.behind.low is not None
@@ -229,6 +237,18 @@ def _left_out() -> Iterator[str]:
     yield from (f"- `{policy}`: {LEFT_OUT[policy]}." for policy in sorted(everywhere))
     for suite, policy in sorted(of_suites):
         yield f"- `{policy}` in {suite}: {LEFT_OUT_OF_SUITES[suite, policy]}."
+
+
+def in_words(policies: Sequence[str]) -> str:
+    """Names of policies in a sentence."""
+    *most, last = [f"`{policy}`" for policy in policies]
+    return f"{', '.join(most)} and {last}" if most else last
+
+
+def in_points(one: Estimate) -> str:
+    """A difference of shares in points, with its interval."""
+    assert one.mean is not None
+    return f"{100 * one.mean:.1f} {_brackets(one.low, one.high)}"
 
 
 def _brackets(low: float | None, high: float | None) -> str:

@@ -13,7 +13,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -144,7 +144,7 @@ TABLES = {
     "clutter_v2": Table(
         "clutter_v2",
         ("posts-15",),
-        ("follow", "orca", "sfm", "dash", *_ADDED, "goal_lidar", "corridor_social"),
+        ("follow", "orca", "sfm", "dash", *_ADDED, "goal_lidar", "goal_lidar_noisy", "corridor_social"),
         again=("posts-15", "posts-45"),
         protocols=("freeze",),
     ),
@@ -164,6 +164,19 @@ TABLES = {
         protocols=("freeze",),
     ),
     "maps_v2": Table("maps_v2", ("forest-1-0.15",), again=("maze",), seeds=10, protocols=("freeze",)),
+}
+"""Name -> table."""
+_NOISY = {
+    "random_polygons_v2": ("robots-5",),
+    "circle_swap_v2": ("diff-8",),
+    "social_v2": ("head-on",),
+    "clutter_v2": ("posts-15",),
+    "crowdnav_circle_v2": ("circle-invisible-5",),
+}
+"""Table whose suite has a twin under realism -> the scenarios of the twin that tests run again."""
+TABLES |= {
+    f"{name}_noisy": replace(TABLES[name], suite=f"{TABLES[name].suite}_noisy", quick=few, again=few, seeds=20)
+    for name, few in _NOISY.items()
 }
 
 
