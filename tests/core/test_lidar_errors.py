@@ -173,12 +173,14 @@ def test_grazing_beams_return_nothing(shape: str) -> None:
     np.testing.assert_array_equal(state.valid == 1, meets & (incidence <= 0.9))
 
 
-@pytest.mark.parametrize(("reflectivity", "expected"), [(0.1, 4.0), (0.9, 10.0), (0.3, 4.0 * 2.5 ** (0.5))])
-def test_dark_surfaces_are_seen_less_far(reflectivity: float, expected: float) -> None:
-    # 0.3 is halfway between 0.1 and 0.9 in the logarithm, so its range is the geometric mean.
-    for range_, seen in ((expected * 0.999, True), (expected * 1.001, False)):
+@pytest.mark.parametrize("reflectivity", [0.02, 0.1, 0.3, 0.8, 0.9])
+@pytest.mark.parametrize("dark", [0.5, 4.0, 9.0])
+def test_dark_surfaces_are_seen_less_far(reflectivity: float, dark: float) -> None:
+    """Of 10 % reflectivity up to ``range_dark``, of 90 % up to ``range_max``, else by a power law between these two."""
+    expected = dark * (reflectivity / 0.1) ** (math.log(10.0 / dark) / math.log(0.9 / 0.1))
+    for range_, seen in ((expected * (1 - 1e-7), True), (expected * (1 + 1e-7), False)):
         if range_ < 10.0:
-            state = look(ring(range_, reflectivity=reflectivity), number=16, range_dark=4.0)
+            state = look(ring(range_, reflectivity=reflectivity), number=16, range_dark=dark)
             assert (state.valid == seen).all()
 
 

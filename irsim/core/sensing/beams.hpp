@@ -55,19 +55,21 @@ Fan cast_beams(const Options& options, const Sensing& s, std::uint64_t first_err
   Fan fan(s.buffers, origin, heading, s.mount, options.range_max);
   const bool shaky = options.noise && options.angle_std > 0.0;
   if (s.spin != 0.0) {
-    Vec2 turned = rotate(unit(-0.5 * (n - 1) * s.spin), heading);
-    const Vec2 on = unit(s.spin);
-    fan.widen(0.5 * (n - 1) * s.spin);
+    // Even and odd beams turn on by themselves, because each turn waits for the one before.
+    const Vec2 on = unit(s.spin), twice = rotate(on, on), first = rotate(unit(-0.5 * (n - 1) * s.spin), heading);
+    Vec2 turned[] = {first, rotate(first, on)};
+    const double most = std::fabs(0.5 * (n - 1) * s.spin);
+    fan.widen(most);
     NormalDraws normal(s.draws());
     for (int i = 0; i < n; ++i) {
       Vec2 nominal{s.mount.cosine[i], s.mount.sine[i]};
       if (shaky) {
         const double error = s.noise() * options.angle_std * normal(first_error + i);
-        fan.widen(std::fabs(error) + std::fabs(0.5 * (n - 1) * s.spin));
+        fan.widen(std::fabs(error) + most);
         nominal = unit(s.mount.angle[i] + error);
       }
-      fan.aim(i, rotate(nominal, turned));
-      turned = rotate(turned, on);
+      fan.aim(i, rotate(nominal, turned[i % 2]));
+      turned[i % 2] = rotate(turned[i % 2], twice);
     }
   } else if (shaky) {
     NormalDraws normal(s.draws());

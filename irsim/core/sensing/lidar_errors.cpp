@@ -1,6 +1,7 @@
 #include "sensing/lidar_errors.hpp"
 
 #include "sensing/beams.hpp"
+#include "sensing/quick_power.hpp"
 #include "sensing/surface.hpp"
 #include "sensing/ziggurat.hpp"
 
@@ -125,7 +126,8 @@ class Detection {
   Detection(const LidarErrors& errors, const RangeLimits& limits)
       : dark_(errors.range_dark),
         fade_(errors.fade),
-        growth_(std::log(limits.farthest / errors.range_dark) / std::log(kWhite / kDark)) {}
+        per_fade_(1.0 / fade_),
+        growth_(dark_ < limits.farthest ? std::log(limits.farthest / dark_) / std::log(kWhite / kDark) : 0.0) {}
 
   /// Whether a surface that throws back a share of the light returns a beam.
   ///
@@ -134,9 +136,9 @@ class Detection {
   bool operator()(double range, double share, double draw) const {
     if (share >= kDark && surely(dark_ - range, draw)) return true;
     // The range at which half of the beams return grows with a power of the share.
-    const double ahead = dark_ * std::pow(share / kDark, growth_) - range;
+    const double ahead = dark_ * quick_power(share * (1.0 / kDark), growth_) - range;
     if (ahead >= 0.0 ? surely(ahead, draw) : surely(-ahead, 1.0 - draw)) return ahead >= 0.0;
-    return ahead >= kWidths * fade_ || (ahead > -kWidths * fade_ && draw < 1.0 / (1.0 + std::exp(-ahead / fade_)));
+    return ahead >= kWidths * fade_ || (ahead > -kWidths * fade_ && draw < 1.0 / (1.0 + std::exp(-ahead * per_fade_)));
   }
 
  private:
@@ -147,11 +149,11 @@ class Detection {
   /// terms of its series, which are smaller.
   bool surely(double ahead, double draw) const {
     if (!(ahead > 0.0)) return false;
-    const double t = ahead / fade_;
+    const double t = ahead * per_fade_;
     return (1.0 - draw) * (2.0 + t * (1.0 + t * (0.5 + t * (1.0 / 6.0)))) > 1.0;
   }
 
-  double dark_, fade_, growth_;
+  double dark_, fade_, per_fade_, growth_;
 };
 
 /// A range that something unseen returns instead of the surface: exponential, and shorter than the way there [m].
@@ -179,8 +181,14 @@ void follow_light(const Sensing& s, const Fan& fan, Surface& surface) {
   follow_mirrors(s, fan, surface);
 }
 
+EpisodeErrors episode_errors(const LidarErrors& errors, const Sensing& s) {
+  if (errors.scale_std == 0.0 && errors.bias_std == 0.0) return {1.0, 0.0};
+  const auto draw = s.draws(3).normals(0);
+  return {1.0 + s.noise() * errors.scale_std * draw[0], s.noise() * errors.bias_std * draw[1]};
+}
+
 void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, const Sensing& s, const Fan& fan,
-                       std::uint64_t first_draw) {
+                       EpisodeErrors episode, std::uint64_t first_draw) {
   const int n = s.mount.count;
   BeamBuffers& beams = s.buffers;
   const bool steep = errors.incidence_max < 0.5 * kPi, dim = errors.range_dark < limits.farthest;
@@ -194,9 +202,7 @@ void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, con
   ZigguratDraws normal(s.draws());
   UniformDraws choice(s.draws(1));
   const Draws details = s.draws(2);
-  const auto episode = s.draws(3).normals(0);
-  const double noise = s.noise(), scale = 1.0 + noise * errors.scale_std * episode[0];
-  const double bias = noise * errors.bias_std * episode[1];
+  const double noise = s.noise(), scale = episode.scale, bias = episode.bias;
   const double least_cosine = steep ? std::cos(errors.incidence_max) : 0.0;
   const double shorts = errors.dropout + errors.short_share, randoms = shorts + errors.random_share;
   const double per_plain = 1.0 / (1.0 - randoms);

@@ -66,6 +66,12 @@ class Surface;
 /// Let the light of a cast fan go its way: write the cosines of incidence, replace what is behind glass and in mirrors.
 void follow_light(const Sensing& sensing, const Fan& fan, Surface& surface);
 
+/// The errors of ranges that hold for an episode.
+struct EpisodeErrors {
+  double scale, bias;  // [1], [m]
+};
+EpisodeErrors episode_errors(const LidarErrors& errors, const Sensing& sensing);
+
 /// Write ranges, hits and valid of a scan with its errors.
 ///
 /// Args:
@@ -73,6 +79,6 @@ void follow_light(const Sensing& sensing, const Fan& fan, Surface& surface);
 ///   first_draw: Draw of the range noise of beam 0, which has the word of the draw of a lidar without further errors,
 ///     but is another number.
 void write_with_errors(const LidarErrors& errors, const RangeLimits& limits, const Sensing& sensing, const Fan& fan,
-                       std::uint64_t first_draw);
+                       EpisodeErrors episode, std::uint64_t first_draw);
 
 }  // namespace irsim

@@ -9,7 +9,9 @@ namespace {
 constexpr double kMinRange = 1e-9;      // closer hits do not count [m]
 constexpr double kSlack = 1e-12;        // edges are extended by this share, so that no beam slips through a corner
 constexpr double kBearingError = 1e-4;  // bound on the error of `bearing` [rad]
-constexpr double kOutside = 1e-9;       // offset from an edge to a point just outside it, relative to the coordinates
+constexpr double kNarrow = 2.8,
+                 kBlur = 0.1;      // angle of a narrow fan, and error of its beams, that leave half a turn [rad]
+constexpr double kOutside = 1e-9;  // offset from an edge to a point just outside it, relative to the coordinates
 
 /// atan2 with an error of at most kBearingError: an odd polynomial fitted to atan on [0, 1], unfolded to the octants.
 inline double bearing(Vec2 v) {
@@ -58,6 +60,12 @@ Fan::Fan(BeamBuffers& buffers, Vec2 origin, Vec2 heading, const Mount& mount, do
   per_radian_ = ordered_ ? 1.0 / spacing : 0.0;
   turn_ = kTurn * per_radian_;
   widen(0.0);
+  narrow_ = ordered_ && spacing * (count_ - 1) < kNarrow;
+  if (narrow_) {
+    const Vec2 first = rotate({mount.cosine[0], mount.sine[0]}, heading);
+    const Vec2 last = rotate({mount.cosine[n - 1], mount.sine[n - 1]}, heading);
+    before_ = {first.y, -first.x}, after_ = {-last.y, last.x};
+  }
 }
 
 void Fan::widen(double error) { blur_ = std::max(blur_, (kBearingError + std::fabs(error)) * per_radian_); }
@@ -81,10 +89,19 @@ inline void Fan::between(double low, double high, Test&& test) const {
   if (low + turn_ < count_) run(low + turn_, high + turn_);
 }
 
+/// Whether a disc lies beside a narrow fan. If this is not certain it is false.
+inline bool Fan::aside(Vec2 from_origin, double radius) const {
+  const double blur = blur_ / per_radian_, far = std::fabs(from_origin.x) + std::fabs(from_origin.y);
+  if (blur > kBlur) return false;
+  return std::max(dot(from_origin, before_), dot(from_origin, after_)) >
+         radius * (1.0 + 1e-9) + far * blur * (1.0 + blur) + 1e-9;
+}
+
 void Fan::consider(int object, Vec2 centre, double radius) {
   const Vec2 d = centre - origin_;
   const double distance2 = squared(d), reach = reach_ + radius;
   if (!(distance2 <= reach * reach && distance2 < kInfinity)) return;
+  if (narrow_ && aside(d, radius)) return;
   const double distance = std::sqrt(distance2);
   const double edge = distance - radius * (1.0 + 1e-9) - 1e-9;  // lower bound of the distance to the body
   BeamBuffers::Body body{edge, 0.0, turn_, object};

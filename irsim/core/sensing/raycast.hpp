@@ -53,6 +53,7 @@ class Fan {
   /// Call `test` for the beams from low to high, and for beams that may be among them within the error of `beam_of`.
   template <class Test>
   void between(double low, double high, Test&& test) const;
+  bool aside(Vec2 from_origin, double radius) const;
   void sort_by_distance();
   bool hidden(const BeamBuffers::Body& body) const;
   void cast_body(const Footprint& body, int object);
@@ -69,6 +70,8 @@ class Fan {
   double reach_, first_, per_radian_, turn_;  // angle of beam 0 [rad]; beams per radian and per turn
   double blur_ = 0.0;                         // largest error of `beam_of` [beams]
   bool ordered_;                              // whether beams are evenly spaced in angle
+  bool narrow_;                               // whether they are, and span less than half a turn
+  Vec2 before_, after_;                       // then: normals of the first and the last beam, which point away from all
 };
 
 }  // namespace irsim

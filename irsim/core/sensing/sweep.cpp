@@ -5,16 +5,25 @@
 namespace irsim {
 namespace {
 
+struct PastPose {
+  Pose pose;
+  Vec2 direction;  // cosine and sine of its heading
+};
+
 /// Where an object was some time before the end of the step [s], if it moved with its twist of this step all the time.
-Pose pose_before(const Sensing& s, int object, double time) {
+PastPose past_pose(const Sensing& s, int object, double time) {
   const World& world = s.world;
   const int row = s.w * world.objects + object;
   const Pose& now = s.state.pose[row];
   const Vec3& twist = s.state.twist[row];
-  const Integration integration = world.dynamics[object].driven ? world.integration : kEuler;
-  const Vec2 way = displacement({twist[0], twist[1]}, twist[2], world.step_time, integration);
-  const Pose start{now.x - way.x, now.y - way.y, now.theta - twist[2] * world.step_time};
-  return pose_at(start, twist, world.step_time - time, integration);
+  const double yaw_rate = twist[2], half = 0.5 * yaw_rate * time;
+  Vec2 way = Vec2{twist[0], twist[1]} * time;
+  if (yaw_rate == 0.0) return {{now.x - way.x, now.y - way.y, now.theta}, s.state.heading(row)};
+  // The chord of the arc on which it moved then has the direction of the heading in the middle of that time.
+  if (world.dynamics[object].driven && world.integration == kExact)
+    way = rotate(way, unit(yaw_rate * world.step_time - half)) * sinc(half);
+  const double theta = now.theta - yaw_rate * time;
+  return {{now.x - way.x, now.y - way.y, theta}, unit(theta)};
 }
 
 }  // namespace
@@ -28,20 +37,20 @@ Sensing part_of_sweep(const LidarErrors& errors, const Sensing& s, int k) {
   s.ghosts.resize(shapes.size[0]);
   for (const int object : world.moving) {
     if (world.unobstructed[object] || object == carrier) continue;
-    const Pose pose = pose_before(s, object, age);
-    s.ghosts.place(shapes, object, pose, unit(pose.theta));
+    const PastPose then = past_pose(s, object, age);
+    s.ghosts.place(shapes, object, then.pose, then.direction);
   }
-  const Pose pose = pose_before(s, carrier, age);
+  const PastPose then = past_pose(s, carrier, age);
   const Vec3& twist = s.state.twist[s.w * world.objects + carrier];
   const double elapsed = world.integration == kExact ? world.step_time - age : 0.0;
-  const Vec2 arm = rotate({s.mount.offset[0], s.mount.offset[1]}, unit(pose.theta));
+  const Vec2 arm = rotate({s.mount.offset[0], s.mount.offset[1]}, then.direction);
   const Vec2 velocity = rotate({twist[0], twist[1]}, unit(twist[2] * elapsed)) + Vec2{-arm.y, arm.x} * twist[2];
   Sensing part{world,
                s.state,
                s.w,
                mount,
-               pose,
-               unit(pose.theta),
+               then.pose,
+               then.direction,
                s.ranges + first,
                s.hits + first,
                s.valid + first,

@@ -66,10 +66,11 @@ inline void fmcw_lidar2d(const FmcwLidar2dOptions& options, const Sensing& s) {
   const bool noisy = options.noise && options.std > 0.0;
   if (options.realism) {
     const RangeLimits limits{options.range_min, options.range_max, noisy ? options.std : 0.0};
+    const EpisodeErrors episode = episode_errors(*options.realism, s);
     return sweep(*options.realism, s, [&](const Sensing& part) {
       const std::uint64_t first = first_draw + part.first_beam;
       const Fan fan = cast_beams(options, part, first + n);
-      write_with_errors(*options.realism, limits, part, fan, first);
+      write_with_errors(*options.realism, limits, part, fan, episode, first);
       write_radial_velocities(options, part, fan, first + 2 * n);
     });
   }

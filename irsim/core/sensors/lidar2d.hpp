@@ -60,10 +60,11 @@ inline std::uint64_t first_draw_of(const Sensing& s) {
 inline void scan_with_errors(const Lidar2dOptions& options, const Sensing& s, const DepthErrors* depth = nullptr) {
   const double std = options.noise && options.std > 0.0 ? options.std : 0.0;
   const RangeLimits limits{options.range_min, options.range_max, std, depth};
+  const EpisodeErrors episode = episode_errors(*options.realism, s);
   sweep(*options.realism, s, [&](const Sensing& part) {
     const std::uint64_t first = first_draw_of(s) + part.first_beam;
     const Fan fan = cast_beams(options, part, first + s.mount.count);
-    write_with_errors(*options.realism, limits, part, fan, first);
+    write_with_errors(*options.realism, limits, part, fan, episode, first);
   });
   write_velocities(options, s);
 }
