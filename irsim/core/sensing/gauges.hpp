@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <initializer_list>
 
 #include "integration.hpp"
 #include "sensing.hpp"
@@ -15,6 +17,12 @@ constexpr int kGaugeMemory = 4;
 /// Whether a point is in one of some zones.
 inline bool in_zones(const World& world, const std::vector<int>& zones, Vec2 at) {
   return std::any_of(zones.begin(), zones.end(), [&](int zone) { return world.zones.covers(zone, at); });
+}
+
+/// A block of normal draws; zeros if all their standard deviations are zero, so that nothing is drawn in vain.
+inline std::array<double, 4> normals_of(const Draws& draws, std::uint64_t block, std::initializer_list<double> stds) {
+  const bool wanted = std::any_of(stds.begin(), stds.end(), [](double std) { return std != 0.0; });
+  return wanted ? draws.normals(block) : std::array<double, 4>{};
 }
 
 /// The motion of a body since the last step, in its own frame: an arc of constant speed and yaw rate.

@@ -27,9 +27,10 @@ Vec2 Surface::normal(const Fan& fan, int i) {
   }
   const Footprint body = sensing_.footprint(object);
   object_ = -1;
-  const double on_edge = slack(at) * slack(at);
+  const double near = slack(at) * slack(at);
   double least = kInfinity;
   Vec2 out{1.0, 0.0};
+  const auto take = [&](Vec2 from, Vec2 along) { object_ = object, from_ = from, along_ = along; };
   for (int part = 0; part < body.count; ++part) {
     const Part& p = body.parts[part];
     const Vec2* vertices = body.vertices + p.first;
@@ -39,12 +40,18 @@ Vec2 Surface::normal(const Fan& fan, int i) {
       const double length = norm(arm), away = (length - p.radius) * (length - p.radius);
       if (away < least) least = away, object_ = -1, out = length > 0.0 ? arm * (1.0 / length) : out;
     }
-    for (int k = 0; k < p.last - p.first && least > on_edge; ++k) {
-      const double away = squared(at - nearest_on_segment(vertices[k], vertices[k + 1], at));
-      if (!(away < least)) continue;
-      least = away, object_ = object, from_ = vertices[k], along_ = vertices[k + 1] - vertices[k];
+    for (int k = 0; k < p.last - p.first; ++k) {
+      const Vec2 along = vertices[k + 1] - vertices[k], rest = at - vertices[k];
+      const double aside = cross(rest, along), way = dot(rest, along), length2 = squared(along);
+      if (aside * aside <= near * length2 && way >= 0.0 && way <= length2) {
+        take(vertices[k], along);
+        return normal_ = normal_to(along);
+      }
     }
-    if (least <= on_edge) break;
+    for (int k = 0; k < p.last - p.first; ++k) {  // the hit is off all edges, which happens beside corners
+      const double away = squared(at - nearest_on_segment(vertices[k], vertices[k + 1], at));
+      if (away < least) least = away, take(vertices[k], vertices[k + 1] - vertices[k]);
+    }
   }
   return object_ < 0 ? out : normal_ = normal_to(along_);
 }

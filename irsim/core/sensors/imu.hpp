@@ -55,7 +55,7 @@ inline void imu(const ImuOptions& o, const Sensing& s) {
   const Vec2 at = s.pose.position() + rotate({o.offset[0], o.offset[1]}, s.direction);
   const Wandering gyro{o.gyro_drift_std, o.gyro_drift_time}, accel{o.accel_drift_std, o.accel_drift_time};
   const Draws white = s.draws(), wander = s.draws(1), episode = s.draws(2);
-  const auto shift = wander.normals(s.scan_number());
+  const auto shift = normals_of(wander, s.scan_number(), {o.gyro_drift_std, o.accel_drift_std});
   if (due == Due::start) {
     place[0] = at.x, place[1] = at.y;
     velocity[0] = velocity[1] = 0.0;
@@ -69,7 +69,9 @@ inline void imu(const ImuOptions& o, const Sensing& s) {
   place[0] = at.x, place[1] = at.y, velocity[0] = now.x, velocity[1] = now.y;
   for (int k = 0; k < 3; ++k) drift[k] = (k == 0 ? gyro : accel).next(drift[k], dt, shift[k]);
   // Both velocities are means over a step, so their difference is the acceleration at the time between the steps.
-  const auto biases = episode.normals(0), axes = episode.normals(1), scales = episode.normals(2);
+  const auto biases = normals_of(episode, 0, {o.gyro_bias_std, o.accel_bias_std}),
+             axes = normals_of(episode, 1, {o.misalignment_std, o.tilt_std}),
+             scales = normals_of(episode, 2, {o.gyro_scale_std, o.accel_scale_std});
   const double factor = s.noise(), turned = factor * o.misalignment_std * axes[1];
   const Vec2 true_accel = unrotate(change, unit(theta_before + o.offset[2] + turned));
   const double lean_ahead = std::sin(factor * o.tilt_std * axes[2]),

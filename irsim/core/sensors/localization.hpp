@@ -38,9 +38,9 @@ inline void localization(const LocalizationOptions& o, const Sensing& s) {
   double *const pose = s.memory + kGaugeMemory, *const error = pose + 3, *const since = pose + 6;
   const double dt = s.world.step_time, stds[] = {o.position_std, o.position_std, o.heading_std};
   const Draws wander = s.draws(1);
-  const auto draw = s.draws().normals(s.scan_number()), shift = wander.normals(2 * s.scan_number());
   bool corrects = due == Due::start;
   if (due == Due::step) {
+    const auto draw = normals_of(s.draws(), s.scan_number(), {o.distance_noise, o.heading_noise, o.turning_noise});
     const double noise = s.noise();
     const Drift drift{noise * o.distance_noise, noise * o.heading_noise, noise * o.turning_noise};
     travel_on(pose, drift.add(travel, draw[0], draw[1]));
@@ -50,6 +50,7 @@ inline void localization(const LocalizationOptions& o, const Sensing& s) {
     corrects = since[0] >= o.min_distance - kRounding || since[1] >= o.min_turn - kRounding;
   }
   if (corrects) {
+    const auto shift = normals_of(wander, 2 * s.scan_number(), {o.position_std, o.heading_std});
     for (int k = 0; k < 3; ++k) {
       const Wandering wandering{stds[k], o.time};
       error[k] = due == Due::start ? wandering.first(shift[k])

@@ -56,7 +56,7 @@ inline void odometry(const OdometryOptions& o, const Sensing& s) {
     std::fill_n(s.readings + 3, 5, 0.0);
     return;
   }
-  const auto episode = s.draws(1).normals(0);
+  const auto episode = normals_of(s.draws(1), 0, {o.diameter_std, o.track_std, o.scale_std});
   const double factor = s.noise();
   const double unequal = 1.0 + o.diameter_error + factor * o.diameter_std * episode[0];
   const double track = o.track * (1.0 + o.track_error + factor * o.track_std * episode[1]);
@@ -72,7 +72,7 @@ inline void odometry(const OdometryOptions& o, const Sensing& s) {
     rolled[side] = ticks > 0 ? (std::floor(turns[side] * ticks) - std::floor(before * ticks)) * per_turn / ticks
                              : (turns[side] - before) * per_turn;
   }
-  const auto draw = s.draws().normals(s.scan_number());
+  const auto draw = normals_of(s.draws(), s.scan_number(), {o.distance_noise, o.heading_noise, o.turning_noise});
   const Drift drift{factor * o.distance_noise, factor * o.heading_noise, factor * o.turning_noise};
   const Travel believed = drift.add(
       {0.5 * (rolled[0] + rolled[1]), scale * travel.aside, (rolled[1] - rolled[0]) / o.track}, draw[0], draw[1]);

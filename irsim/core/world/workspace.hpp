@@ -31,6 +31,7 @@ struct BeamBuffers {
   std::vector<double> dx, dy, range;
   std::vector<std::int32_t> hit;
   std::vector<double> cosine, power;  // of the incidence, and share of its light that returns; for lidars with errors
+  std::vector<double> luck;           // uniform draws of a scan, by which beams come back or not
   std::vector<double> cone;           // ranges of the rays of the cones of all beams [m]
   std::vector<Body> bodies, sorted;
 };
