@@ -15,6 +15,7 @@ from irsim.studio.checking import check
 from irsim.studio.editing import NotEdited, edit
 
 TEMPLATES = sorted((Path(__file__).parents[2] / "templates").glob("*/scenario.yaml"))
+BAD = sorted((Path(__file__).parents[1] / "scenario" / "bad").glob("*.yaml"))
 SCENE = """\
 # two
 robot:
@@ -97,3 +98,10 @@ def test_each_of_several_objects_with_a_state_of_its_own_is_dragged_alone() -> N
     paths = [place["pose"] for place in check(text, None, None, DEFAULT_LIMITS)["objects"]]
     assert paths == [["robot", 0, "state", 0], ["robot", 0, "state", 1]]
     assert edited(text, action="numbers", path=paths[1], value=[3, 2]) == text.replace("[2.5, 2, 0]", "[3, 2, 0]")
+
+
+@pytest.mark.parametrize("file", BAD, ids=lambda file: file.stem)
+def test_findings_are_those_of_irsim_validate(file: Path) -> None:
+    text = file.read_bytes().decode(errors="replace")
+    told = [{**one, "file": None} for one in check(text, None, None, DEFAULT_LIMITS)["findings"]]
+    assert told == [{**one, "file": None} for one in irsim.validate(text=text).model_dump()["findings"]]

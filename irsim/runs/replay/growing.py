@@ -66,7 +66,8 @@ class GrowingRun:
         self._last = int(start.step[0])
         self._here = ~np.isnan(start.pose[0, :, 0])
         self._goal, self._flags = start.goal[0], flags_of(start)[0]
-        self._pose = np.where(self._here[:, None], start.pose[0], [item["pose"] for item in self._objects])
+        places = np.reshape([item["pose"] for item in self._objects], start.pose[0].shape)
+        self._pose = np.where(self._here[:, None], start.pose[0], places)
         for row, record in enumerate(simulation.scenario.objects):
             if start_step := int(simulation.start_step[row]):
                 self._objects[row]["until"] = start_step
