@@ -1014,8 +1014,9 @@ class Variation:
 
     A `number` says how many of the objects take part, `latency` is a whole number of steps, and the others are factors:
     `size` (of the footprint about the origin of the body frame), `speed` and `acceleration` (of the limits),
-    `sensor_noise` (of the standard deviations), `delay` and `lag` (of the actuators). Objects are drawn one by one, or
-    with `same` together.
+    `sensor_noise` (of the standard deviations), `delay` and `lag` (of the actuators), `sensor_rate` and
+    `sensor_latency` (of sensors that have them), `slip` and `grip` (of zones, as the object feels them). Objects are
+    drawn one by one, or with `same` together.
     """
 
     def __init__(self, *, quantity: str, objects: Sequence[int], low: float, high: float, same: bool) -> None: ...
@@ -1157,7 +1158,11 @@ class State:
     acceleration_scale: Floats  # (R,) on the limits of accelerations,
     noise_scale: Floats  # (R,) on the standard deviations of sensors,
     delay_scale: Floats  # (R,) on the dead time of actuators,
-    lag_scale: Floats  # (R,) and on their lag
+    lag_scale: Floats  # (R,) on their lag,
+    sensor_rate_scale: Floats  # (R,) on the rates of sensors,
+    sensor_latency_scale: Floats  # (R,) on their latencies,
+    slip_scale: Floats  # (R,) on the slip of zones under the wheels of the object,
+    grip_scale: Floats  # (R,) and on their grip
     latency: NDArray[np.int32]  # (R,) steps after which the caller is asked to execute an action
     level: NDArray[np.int32]  # (W,) level of the scenes drawn from now on; may be set
     variant: NDArray[np.int32]  # (W,) index among the variants of the world in this scene; -1 without any

@@ -27,6 +27,10 @@ _ARRAYS = {
     "latency": "latency",
     "delay": "delay_scale",
     "lag": "lag_scale",
+    "sensor_rate": "sensor_rate_scale",
+    "sensor_latency": "sensor_latency_scale",
+    "slip": "slip_scale",
+    "grip": "grip_scale",
 }
 """Quantity -> array of the state of the core."""
 

@@ -61,6 +61,10 @@ void BoundState::expose() {
   noise_scale = view<double>(state.noise_scale.memory, {rows});
   delay_scale = view<double>(state.delay_scale.memory, {rows});
   lag_scale = view<double>(state.lag_scale.memory, {rows});
+  sensor_rate_scale = view<double>(state.sensor_rate_scale.memory, {rows});
+  sensor_latency_scale = view<double>(state.sensor_latency_scale.memory, {rows});
+  slip_scale = view<double>(state.slip_scale.memory, {rows});
+  grip_scale = view<double>(state.grip_scale.memory, {rows});
   latency = view<std::int32_t>(state.latency.memory, {rows});
   level = view<std::int32_t>(state.level.memory, {worlds});
   variant = view<std::int32_t>(state.variant.memory, {worlds});

@@ -21,9 +21,9 @@ struct BoundState {
   std::atomic<bool> busy{false};  // whether a thread works on the state without the GIL
   nb::object pose, extra, control, twist, command, commanded, drive, actuated, contact_time, air_time, touching, given,
       arrived, believes_arrived, collided, stopped, radius, vel_min, vel_max, acce, takes_part, size_scale, speed_scale,
-      acceleration_scale, noise_scale, delay_scale, lag_scale, latency, level, variant, pace, start_step, appeared,
-      infeasible, between_steps, goal, ranges, hits, valid, beam_angles, velocities, readings, stamp, explored, count,
-      scene, noise, seed, failed_placement;
+      acceleration_scale, noise_scale, delay_scale, lag_scale, sensor_rate_scale, sensor_latency_scale, slip_scale,
+      grip_scale, latency, level, variant, pace, start_step, appeared, infeasible, between_steps, goal, ranges, hits,
+      valid, beam_angles, velocities, readings, stamp, explored, count, scene, noise, seed, failed_placement;
 
   /// The C++ state, after a check that it belongs to this world.
   State& of(const World& named);

@@ -18,15 +18,16 @@ void feel_ground(const World& world, State& state, int row) {
       under.wheel[k] = {};
       continue;
     }
-    double slip = ground->slip;
+    const double scale = state.slip_scale[row];
+    double slip = std::min(1.0, ground->slip * scale);
     if (ground->slip_std > 0.0) {
       const double draw = draws.normals(static_cast<std::uint64_t>(state.count[w]))[static_cast<std::size_t>(k)];
       double& wander = under.wander[k];
       const bool lasts = ground->slip_time > 0.0 && std::isfinite(wander);
       wander = lasts ? Wandering{1.0, ground->slip_time}.next(wander, world.step_time, draw) : draw;
-      slip = clip(slip + ground->slip_std * wander, 0.0, 1.0);
+      slip = clip(ground->slip * scale + ground->slip_std * scale * wander, 0.0, 1.0);
     }
-    under.wheel[k] = {slip, ground->grip, ground->spread, ground->traction};
+    under.wheel[k] = {slip, ground->grip * state.grip_scale[row], ground->spread, ground->traction};
   }
 }
 

@@ -39,6 +39,13 @@ Data part_of(const Data& all, const Mount& mount, std::size_t number) {
           all.stamp + number};
 }
 
+/// The times of a sensor in the present scene of a world.
+Timetable times_in(const World& world, const State& state, int w, const Scan& sensor) {
+  if (!sensor.times.varies) return sensor.times;
+  const int row = w * world.objects + sensor.mount.object;
+  return scaled(sensor.times, state.sensor_rate_scale[row], state.sensor_latency_scale[row]);
+}
+
 /// A slot of a sensor whose data are late.
 Data in_slot(const World& world, const State& state, int w, const Scan& sensor, std::size_t slot) {
   const Timetable& times = sensor.times;
@@ -58,8 +65,9 @@ Data in_slot(const World& world, const State& state, int w, const Scan& sensor, 
 }
 
 /// The slot of the last measurement until a step.
-Data on_the_way(const World& world, const State& state, int w, const Scan& sensor, std::int64_t step) {
-  return in_slot(world, state, w, sensor, sensor.times.slot(step));
+Data on_the_way(const World& world, const State& state, int w, const Scan& sensor, const Timetable& times,
+                std::int64_t step) {
+  return in_slot(world, state, w, sensor, times.slot(step));
 }
 
 void copy(const Mount& mount, const Data& from, const Data& to) {
@@ -109,10 +117,10 @@ void measure(const World& world, State& state, int w, const Scan& sensor, const 
 /// The step of a sensor that measures in some steps only, or whose data are late.
 void measure_in_time(const World& world, State& state, int w, const Scan& sensor, const Pose& pose, Vec2 direction,
                      Workspace& work, bool sweeping, const Data& show) {
-  const Timetable& times = sensor.times;
+  const Timetable times = times_in(world, state, w, sensor);
   const std::int64_t step = state.count[w];
   if (times.due(step)) {
-    const Data to = times.delay > 0 ? on_the_way(world, state, w, sensor, step) : show;
+    const Data to = times.delay > 0 ? on_the_way(world, state, w, sensor, times, step) : show;
     measure(world, state, w, sensor, pose, direction, work, sweeping, to, times.steps_since(step));
   } else if (sensor.mount.memory > 0) {
     work.readings.resize(static_cast<std::size_t>(sensor.mount.readings));
@@ -121,7 +129,7 @@ void measure_in_time(const World& world, State& state, int w, const Scan& sensor
     measure(world, state, w, sensor, pose, direction, work, sweeping, nowhere, 0);
   }
   if (times.delay > 0 && times.arrives(step)) {
-    copy(sensor.mount, on_the_way(world, state, w, sensor, step - times.delay), show);
+    copy(sensor.mount, on_the_way(world, state, w, sensor, times, step - times.delay), show);
   }
 }
 
@@ -192,9 +200,10 @@ void go_on_showing(const World& world, State& state, int object, const World& wo
 
 const double* just_measured(const World& world, const State& state, int w, const Scan& sensor) {
   const std::int64_t step = state.count[w];
-  if (!sensor.times.due(step)) return nullptr;
-  return sensor.times.delay > 0 ? on_the_way(world, state, w, sensor, step).ranges
-                                : part_of(shown(world, state, w), sensor.mount, 0).ranges;
+  const Timetable times = times_in(world, state, w, sensor);
+  if (!times.due(step)) return nullptr;
+  return times.delay > 0 ? on_the_way(world, state, w, sensor, times, step).ranges
+                         : part_of(shown(world, state, w), sensor.mount, 0).ranges;
 }
 
 void update_object_velocities(const World& world, const State& state, int w, Workspace& work) {

@@ -25,12 +25,15 @@ struct SensorTiming {
 
 /// The times of a sensor as numbers of steps, and its place in `Pending`.
 struct Timetable {
-  double per_step = 1.0;   // measurements in a step, at most 1
-  std::int64_t delay = 0;  // steps until data arrive
-  std::int64_t slots = 0;  // measurements that may be on their way; 0 without a delay
+  double rate = 0.0, latency = 0.0;  // measurements in a step, 0 without a rate, and steps until data arrive, as given
+  bool varies = false;               // whether these are drawn for each scene
+  double per_step = 1.0;             // measurements in a step, at most 1
+  std::int64_t delay = 0;            // steps until data arrive
+  std::int64_t slots = 0;            // measurements that may be on their way; 0 without a delay
   std::size_t first_time = 0, first_beam = 0, first_velocity = 0, first_reading = 0;
 
-  bool each_step() const { return per_step >= 1.0 && delay == 0; }
+  /// Whether it always measures in each step, and its data arrive at once.
+  bool each_step() const { return per_step >= 1.0 && delay == 0 && !varies; }
   bool operator==(const Timetable& o) const { return per_step == o.per_step && delay == o.delay; }
   /// Number of the last measurement until the end of a step.
   std::int64_t last(std::int64_t step) const {
@@ -58,14 +61,26 @@ struct Timetable {
   std::size_t slot(std::int64_t step) const { return static_cast<std::size_t>(last(step) % slots); }
 };
 
+/// The same times at factors on the rate and on the latency; the place in `Pending` stays.
+inline Timetable scaled(Timetable times, double on_rate, double on_latency) {
+  constexpr double kRounding = 1e-9;  // share of a step
+  times.per_step = times.rate > 0.0 ? std::fmin(1.0, times.rate * on_rate) : 1.0;
+  times.delay = static_cast<std::int64_t>(std::ceil(times.latency * on_latency - kRounding));
+  return times;
+}
+
+/// Number of measurements that may be on their way; 0 without a delay.
+inline std::int64_t slots_of(const Timetable& times) {
+  return times.delay > 0 ? 2 + static_cast<std::int64_t>(std::ceil(static_cast<double>(times.delay) * times.per_step))
+                         : 0;
+}
+
 /// The times of a sensor in a world with this step time [s].
 inline Timetable timetable_of(const SensorTiming& timing, double step_time) {
-  constexpr double kRounding = 1e-9;  // share of a step
   Timetable out;
-  if (timing.rate > 0.0) out.per_step = std::fmin(1.0, timing.rate * step_time);
-  out.delay = static_cast<std::int64_t>(std::ceil(timing.latency / step_time - kRounding));
-  if (out.delay > 0)
-    out.slots = 2 + static_cast<std::int64_t>(std::ceil(static_cast<double>(out.delay) * out.per_step));
+  out.rate = timing.rate * step_time, out.latency = timing.latency / step_time;
+  out = scaled(out, 1.0, 1.0);
+  out.slots = slots_of(out);
   return out;
 }
 

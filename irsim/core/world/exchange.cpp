@@ -36,6 +36,10 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   to.noise_scale[row] = from.noise_scale[old_row];
   to.delay_scale[row] = from.delay_scale[old_row];
   to.lag_scale[row] = from.lag_scale[old_row];
+  to.sensor_rate_scale[row] = from.sensor_rate_scale[old_row];
+  to.sensor_latency_scale[row] = from.sensor_latency_scale[old_row];
+  to.slip_scale[row] = from.slip_scale[old_row];
+  to.grip_scale[row] = from.grip_scale[old_row];
   to.latency[row] = from.latency[old_row];
   to.start_step[row] = from.start_step[old_row];
   to.appeared[row] = from.appeared[old_row];

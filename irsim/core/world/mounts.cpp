@@ -46,17 +46,34 @@ std::vector<Mount> split(const Mount& mount, int parts) {
   return out;
 }
 
-/// The times of a sensor, with places for its measurements on their way.
-Timetable lay_out(World& world, const ObjectSpec& spec, std::size_t k, const Mount& mount) {
-  if (spec.timing.empty()) return {};
-  Timetable made = timetable_of(spec.timing[k], world.step_time);
+/// Give the measurements of a sensor that are on their way their places.
+void lay_out(World& world, const Mount& mount, Timetable& made) {
   const auto slots = static_cast<std::size_t>(made.slots), beams = static_cast<std::size_t>(mount.reported());
   made.first_time = world.pending_times, made.first_beam = world.pending_beams;
   made.first_velocity = world.pending_velocities, made.first_reading = world.pending_readings;
   world.pending_times += slots, world.pending_beams += slots * beams;
   world.pending_velocities += slots * beams * static_cast<std::size_t>(mount.velocity_rows);
   world.pending_readings += slots * static_cast<std::size_t>(mount.readings);
+}
+
+/// The times of a sensor, with places for its measurements on their way.
+Timetable times_of(World& world, const ObjectSpec& spec, std::size_t k, const Mount& mount) {
+  if (spec.timing.empty()) return {};
+  Timetable made = timetable_of(spec.timing[k], world.step_time);
+  lay_out(world, mount, made);
   return made;
+}
+
+/// The largest factor that a scene may draw for a quantity of an object; 0 if it is never drawn.
+double largest_factor(const World& world, int object, Quantity quantity) {
+  double largest = 0.0;
+  for (const Level& level : world.levels) {
+    for (const Variation& v : level.variations) {
+      const bool named = std::find(v.objects.begin(), v.objects.end(), object) != v.objects.end();
+      if (v.quantity == quantity && named) largest = std::max({largest, v.high, 1.0});
+    }
+  }
+  return largest;
 }
 
 }  // namespace
@@ -92,7 +109,7 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
     ++world.sensors_per_world;
     world.readings_per_world += mount.readings, world.memory_per_world += mount.memory;
     if (mount.readings > 0) {  // its rays are not reported, so they have no place among the beams of the world
-      world.gauges.push_back({spec.sensors[k], mount, {}, lay_out(world, spec, k, mount), kInfinity});
+      world.gauges.push_back({spec.sensors[k], mount, {}, times_of(world, spec, k, mount), kInfinity});
       world.detects = world.detects || std::holds_alternative<DetectorOptions>(spec.sensors[k]);
       continue;
     }
@@ -103,7 +120,21 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
     with(spec.sensors[k],
          [&](const auto& options) { parts = std::min(sweep_parts(options), mount.count), reach = farthest(options); });
     world.scans.push_back({spec.sensors[k], mount, parts > 1 ? split(mount, parts) : std::vector<Mount>(),
-                           lay_out(world, spec, k, mount), reach});
+                           times_of(world, spec, k, mount), reach});
+  }
+}
+
+void lay_out_pending(World& world) {
+  world.pending_times = world.pending_beams = world.pending_velocities = world.pending_readings = 0;
+  for (std::vector<Scan>* sensors : {&world.scans, &world.gauges}) {
+    for (Scan& sensor : *sensors) {
+      const double on_rate = largest_factor(world, sensor.mount.object, Quantity::sensor_rate);
+      const double on_latency = largest_factor(world, sensor.mount.object, Quantity::sensor_latency);
+      Timetable& times = sensor.times;
+      times.varies = (on_rate > 0.0 && times.rate > 0.0) || (on_latency > 0.0 && times.latency > 0.0);
+      times.slots = slots_of(scaled(times, std::max(1.0, on_rate), std::max(1.0, on_latency)));
+      lay_out(world, sensor.mount, times);
+    }
   }
 }
 

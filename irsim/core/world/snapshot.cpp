@@ -109,6 +109,7 @@ struct Walk {
     all(s.readings, s.memory, s.stamp, s.pending.time, s.pending.ranges, s.pending.velocities, s.pending.readings);
     all(s.pending.hits, s.pending.valid);
     all(s.event_count, s.scenes, s.actuated, s.underfoot, s.queue, s.delay_scale, s.lag_scale);
+    all(s.sensor_rate_scale, s.sensor_latency_scale, s.slip_scale, s.grip_scale);
   }
 
   /// The body-frame geometry of a world; the cells of maps are given by their number among `grids`.

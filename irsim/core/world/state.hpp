@@ -70,6 +70,7 @@ struct State {
   // what varies between scenes, see world/variation.hpp
   Array<std::uint8_t> takes_part;  // 0: the object is absent in this scene
   Array<double> size_scale, speed_scale, acceleration_scale, noise_scale, delay_scale, lag_scale;
+  Array<double> sensor_rate_scale, sensor_latency_scale, slip_scale, grip_scale;
   Array<std::int32_t> latency;        // steps after which the caller is asked to execute an action
   Array<std::int32_t> infeasible;     // steps of this episode in which no velocity avoided every collision
   Array<std::int32_t> between_steps;  // contacts of this episode between two steps, with nothing touched at either

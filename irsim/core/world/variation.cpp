@@ -9,8 +9,14 @@
 namespace irsim {
 namespace {
 
-constexpr std::uint64_t kRankDraw = 8;  // of the order in which objects take part; draws before it are quantities
+constexpr std::uint64_t kRankDraw = 8;  // of the order in which objects take part; all others are of quantities
 constexpr int kWholeWorld = -1;         // stands for an object in draws that belong to none
+
+/// The number of the draw of a quantity.
+std::uint64_t draw_of(Quantity quantity) {
+  const auto number = static_cast<std::uint64_t>(quantity);
+  return number < kRankDraw ? number : number + 1;
+}
 
 double drawn_number(double draw, const Variation& v) {
   return std::min(v.high, v.low + std::floor(draw * (v.high - v.low + 1.0)));
@@ -53,6 +59,18 @@ void set(State& state, int row, Quantity quantity, double value) {
     case Quantity::lag:
       state.lag_scale[row] = value;
       break;
+    case Quantity::sensor_rate:
+      state.sensor_rate_scale[row] = value;
+      break;
+    case Quantity::sensor_latency:
+      state.sensor_latency_scale[row] = value;
+      break;
+    case Quantity::slip:
+      state.slip_scale[row] = value;
+      break;
+    case Quantity::grip:
+      state.grip_scale[row] = value;
+      break;
   }
 }
 
@@ -65,6 +83,8 @@ void vary(const World& world, State& state, int w) {
     state.takes_part[row] = 1;
     state.size_scale[row] = state.speed_scale[row] = state.acceleration_scale[row] = state.noise_scale[row] = 1.0;
     state.delay_scale[row] = state.lag_scale[row] = 1.0;
+    state.sensor_rate_scale[row] = state.sensor_latency_scale[row] = 1.0;
+    state.slip_scale[row] = state.grip_scale[row] = 1.0;
     state.latency[row] = 0;
   }
   const Key key = make_key(state.seed[w], state.scene_index[w], 0);
@@ -76,9 +96,7 @@ void vary(const World& world, State& state, int w) {
   }
   for (const Variation& v : level.variations) {
     if (v.objects.empty()) continue;
-    const auto draw = [&](int number) {
-      return Draws(key, Stream::task, number).uniform(static_cast<std::uint64_t>(v.quantity));
-    };
+    const auto draw = [&](int number) { return Draws(key, Stream::task, number).uniform(draw_of(v.quantity)); };
     const bool whole = v.quantity == Quantity::number || v.quantity == Quantity::latency;
     const auto value = [&](int number) {
       return whole ? drawn_number(draw(number), v) : v.low + (v.high - v.low) * draw(number);

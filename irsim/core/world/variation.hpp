@@ -1,5 +1,5 @@
-// The differences between the episodes of a task, besides places: who takes part, sizes, limits, noise, delays,
-// geometry.
+// The differences between the episodes of a task, besides places: who takes part, sizes, limits, noise, delays, times
+// of sensors, ground, geometry.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,20 @@
 
 namespace irsim {
 
-enum class Quantity { number, size, speed, acceleration, sensor_noise, latency, delay, lag };
+enum class Quantity {
+  number,
+  size,
+  speed,
+  acceleration,
+  sensor_noise,
+  latency,
+  delay,
+  lag,
+  sensor_rate,
+  sensor_latency,
+  slip,
+  grip
+};
 
 /// A quantity that is drawn for each scene, uniformly: a whole number of `low` to `high`, or a factor.
 struct Variation {
@@ -20,7 +33,7 @@ struct Variation {
   static constexpr auto fields(const Visit& visit) {
     using V = Variation;
     return visit(choice("quantity", &V::quantity, "number", "size", "speed", "acceleration", "sensor_noise", "latency",
-                        "delay", "lag"),
+                        "delay", "lag", "sensor_rate", "sensor_latency", "slip", "grip"),
                  field("objects", &V::objects), field("low", &V::low), field("high", &V::high),
                  field("same", &V::same));
   }

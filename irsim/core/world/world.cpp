@@ -255,6 +255,7 @@ void World::set_levels(std::vector<Level> given, const std::vector<std::vector<i
   }
   levels = std::move(given);
   lay_out_queues(*this);
+  lay_out_pending(*this);
 }
 
 void World::set_variants(std::vector<std::shared_ptr<World>> given) {

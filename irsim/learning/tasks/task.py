@@ -45,7 +45,10 @@ __all__ = [
 ]
 
 
-QUANTITIES = ("number", "size", "speed", "acceleration", "sensor_noise", "latency", "delay", "lag")
+QUANTITIES = (
+    "number", "size", "speed", "acceleration", "sensor_noise", "latency", "delay", "lag", "sensor_rate",
+    "sensor_latency", "slip", "grip",
+)  # fmt: skip
 """Quantities drawn for objects of the scenario, in the order of the keys."""
 
 
@@ -88,6 +91,9 @@ class Randomize(Options):
         "noise": "sensor_noise",
         "dead_time": "delay",
         "tau": "lag",
+        "rate": "sensor_rate",
+        "slippage": "slip",
+        "mu": "grip",
         "params": "parameters",
     }
 
@@ -111,7 +117,20 @@ class Randomize(Options):
     """Factor on `delay` of the `actuation` of the objects; at most 2 s come of it."""
     lag: dict[str, FactorsFromZero] = {}
     """Factor on `lag` of the `actuation` of the objects."""
-    same: list[Literal["size", "speed", "acceleration", "sensor_noise", "latency", "delay", "lag"]] = []
+    sensor_rate: dict[str, Factors] = {}
+    """Factor on `rate` of all sensors of the objects that have one."""
+    sensor_latency: dict[str, FactorsFromZero] = {}
+    """Factor on `latency` of all sensors of the objects that have one; at most 10 s come of it."""
+    slip: dict[str, FactorsFromZero] = {}
+    """Factor on `slip` and `slip_std` of all zones, as the objects feel them; at most a slip of 1 comes of it."""
+    grip: dict[str, Factors] = {}
+    """Factor on `grip` of all zones with a ground, as the objects feel them: 0.5 halves it where it is 1, too."""
+    same: list[
+        Literal[
+            "size", "speed", "acceleration", "sensor_noise", "latency", "delay", "lag", "sensor_rate",
+            "sensor_latency", "slip", "grip",
+        ]
+    ] = []  # fmt: skip
     """Quantities of which all objects of a word share one draw."""
     parameters: dict[str, Annotated[list[Value], Field(min_length=1, max_length=64)]] = {}
     """Parameters of the template: [low, high] for numbers, a list of values otherwise. They change the geometry, so
@@ -121,8 +140,9 @@ class Randomize(Options):
     a number are spread evenly from low to high, in an order of its own for each parameter."""
     observed: list[Annotated[str, Field(min_length=1, max_length=100)]] = []
     """Draws that the policy observes, at the end of its observation, from 0 (low) to 1 (high): `size`, `speed`,
-    `acceleration`, `sensor_noise`, `latency`, `delay`, `lag` of the learner itself, `number.WORD`, `parameters.NAME`.
-    A policy that observes them cannot be exported, because only a simulation knows them."""
+    `acceleration`, `sensor_noise`, `latency`, `delay`, `lag`, `sensor_rate`, `sensor_latency`, `slip`, `grip` of the
+    learner itself, `number.WORD`, `parameters.NAME`. A policy that observes them cannot be exported, because only a
+    simulation knows them."""
 
 
 def merged(base: Randomize, change: Randomize) -> Randomize:

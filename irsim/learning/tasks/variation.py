@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from irsim.common.text import clean, listed, plural
+from irsim.components.sensors._timing import MOST_LATENCY
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.learning.tasks.files import task_error
 from irsim.learning.tasks.task import QUANTITIES, Randomize, Task, merged
@@ -96,6 +97,7 @@ class _Selection:
     """Finds objects by words."""
 
     def __init__(self, scenario: ResolvedScenario, learners: Sequence[int]) -> None:
+        self.zones = scenario.world.zones
         self.records = [record for record in scenario.objects if record.path[0] != "world"]
         self.learners = [scenario.objects[i] for i in learners]
         kinds = kinds_of(self.records)
@@ -181,8 +183,43 @@ def _check(
         if quantity == "delay" and high * max(longest) > MAX_DELAY:
             what = f"a delay of {high * max(longest):g} s would be longer than {MAX_DELAY:g} s"
             raise task_error(where, what, f"end the range at {MAX_DELAY / max(longest):g}")
+    if quantity in ("sensor_rate", "sensor_latency"):
+        _check_times(quantity.removeprefix("sensor_"), word, records, high, where)
+    if quantity in ("slip", "grip"):
+        _check_ground(quantity, word, records, where, selection)
     if quantity == "size" and any(record.is_terrain for record in records):
         raise task_error(where, "maps and walls around the world have no size", "name other objects")
+
+
+def _check_times(key: str, word: str, records: Sequence[ObjectRecord], high: float, where: Where) -> None:
+    """Refuse draws of times that no sensor has, or that would be too long.
+
+    Raises:
+        TaskError: No object has a sensor with this key, or the latency would be too long.
+    """
+    longest = max((getattr(sensor, key, None) or 0.0 for r in records for sensor in r.sensors), default=0.0)
+    if not longest:
+        what = f"no sensor of {clean(word)!r} has a {key} that could be drawn"
+        raise task_error(where, what, f"give a sensor a `{key}` in the scenario")
+    if key == "latency" and high * longest > MOST_LATENCY:
+        what = f"a latency of {high * longest:g} s would be longer than {MOST_LATENCY:g} s"
+        raise task_error(where, what, f"end the range at {MOST_LATENCY / longest:g}")
+
+
+def _check_ground(
+    quantity: str, word: str, records: Sequence[ObjectRecord], where: Where, selection: _Selection
+) -> None:
+    """Refuse draws of a ground that no zone has, or that none of the objects feels.
+
+    Raises:
+        TaskError: Nothing would change.
+    """
+    if not any(quantity in getattr(record.kinematics, "feels", ()) for record in records):
+        what = f"no drive of {clean(word)!r} feels the {quantity} of zones"
+        raise task_error(where, what, f"name objects with a drive that does: see `irsim describe {quantity}`")
+    if not any(zone.slip or zone.slip_std if quantity == "slip" else zone.has_ground for zone in selection.zones):
+        what = f"no zone of the scenario has a {quantity} that could be drawn"
+        raise task_error(where, what, f"give a zone of `world.zones` a `{quantity}` in the scenario")
 
 
 def _times(record: ObjectRecord, key: str) -> list[float]:

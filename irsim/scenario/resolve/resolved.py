@@ -246,7 +246,8 @@ class DrawnQuantity:
     """A quantity that is drawn for each scene, uniformly; see ``Variation`` in ``irsim/_core.pyi``.
 
     Attributes:
-        quantity: number, size, speed, acceleration, sensor_noise, latency, delay or lag.
+        quantity: number, size, speed, acceleration, sensor_noise, latency, delay, lag, sensor_rate, sensor_latency,
+            slip or grip.
         word: Name of the objects in the task.
         objects: Their ids.
         low, high: Range.
