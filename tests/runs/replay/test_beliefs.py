@@ -113,11 +113,47 @@ def test_a_run_that_is_simulated_shows_the_same(workspace: Path) -> None:
     assert seen == tracks_of(head, columns)
 
 
-def test_a_replay_in_a_notebook_leaves_out_what_was_not_kept(workspace: Path) -> None:
+@pytest.mark.parametrize("resets", [0, 2])
+def test_a_replay_in_a_notebook_shows_the_same(workspace: Path, resets: int) -> None:
     env = started(workspace)
-    for _ in range(20):
+    for _ in range(resets):
         env.step()
+        env.reset()
+    growing, reported = GrowingRun(env.simulation, 25), []
+    for _ in range(25):
+        env.step()
+        growing.look()
+        reported.append(env.robot.sensors[1].read())
     head, columns = unpacked(data_in(env.replay().text))
+    block = growing.block()
     env.end(0)
-    assert not any("belief" in item for item in head["objects"])
-    assert columns["x"].shape == (2, 21)
+    assert block is not None
+    believed = beliefs_of(head, columns, "lost")
+    for axis, key in enumerate(("x", "y", "theta")):
+        assert believed[1:, axis] == pytest.approx([one[key] for one in reported], abs=2e-3)
+    assert tracks_of(head, columns) == {
+        **tracks_of(*unpacked(growing.head)),
+        **{row + 1: tracks for row, tracks in tracks_of(head, unpacked(block)[1]).items()},
+    }
+    assert head["notes"] == []
+
+
+def test_a_replay_in_a_notebook_names_what_it_cannot_compute_again(workspace: Path) -> None:
+    text = """\
+world: {width: 10, height: 10, zones: [{name: wet, rectangle: [2, 0, 8, 10], slip: 0.3}]}
+robot: {name: lost, kinematics: {name: diff}, state: [1, 5, 0], goal: [9, 5], behavior: {name: dash},
+        perceives: estimate, sensors: [{name: odometry}]}
+"""
+    path = workspace / "wet.yaml"
+    path.write_text(text)
+    env = irsim.make(str(path), seed=1, display=False)
+    pages = []
+    for _ in range(2):
+        for _ in range(8):
+            env.step()
+        pages.append(unpacked(data_in(env.replay().text))[0])
+    env.end(0)
+    assert ["belief" in page["objects"][0] for page in pages] == [True, False]
+    assert pages[0]["notes"] == []
+    [note] = pages[1]["notes"]
+    assert note == "what 'lost/odometry' reported is not shown: the replay cannot compute it again"
