@@ -13,8 +13,9 @@ import pytest
 from irsim.components.sensors._realism import LidarRealism
 from irsim.components.sensors.odometry import Odometry
 from irsim.diagnostics.diagnostic import Diagnostic
+from irsim.scenario.model.zones import Zone
 from irsim.scenario.read import read
-from irsim.scenario.resolve.odometry_drift import drift_of
+from irsim.scenario.resolve.odometry_drift import Slippage, drift_of
 
 WAYPOINTS = [[11.0, 5.0], [11.0, 9.0], [5.0, 9.0]]
 LEGS = list(zip([(5.0, 5.0), *map(tuple, WAYPOINTS)], map(tuple, WAYPOINTS), strict=False))
@@ -75,6 +76,59 @@ def test_the_expected_drift_is_that_of_many_robots(make: Callable[..., Any], key
     env.end(ending_time=0)
     expected = drift_of(Odometry(**{key: value for key, value in sensor.items() if key != "name"}), LEGS, 0.0).error
     assert math.sqrt(np.mean(np.square(errors))) == pytest.approx(expected, rel=0.12)
+
+
+@pytest.mark.parametrize(
+    ("ground", "track"),
+    [
+        ({"slip": 0.2}, 0.3),
+        ({"slip": 0.3, "slip_std": 0.1, "slip_time": 0.5}, 0.6),
+        ({"slip": 0.3, "slip_std": 0.08, "slip_time": 0}, 0.6),
+    ],
+)
+def test_the_expected_drift_counts_the_slip_of_zones(
+    make: Callable[..., Any], ground: dict[str, float], track: float
+) -> None:
+    zone = {"name": "wet", "rectangle": [6, 3, 8, 7], **ground}
+    scene = {
+        "world": {"width": 16, "height": 14, "step_time": 0.1, "time_limit": 60, "zones": [zone]},
+        "robot": {
+            "number": 300,
+            "kinematics": {"name": "diff", "track": track},
+            "shape": {"name": "circle", "radius": 0.2},
+            "state": [5, 5, 0],
+            "waypoints": WAYPOINTS,
+            "goal_threshold": 0.1,
+            "vel_max": [1, 1],
+            "vel_min": [0, -1],
+            "unobstructed": True,
+            "behavior": {"name": "dash", "angle_tolerance": 0.06},
+            "sensors": [{"name": "odometry", "track": track}],
+        },
+    }
+    env = make(json.dumps(scene), seed=1)
+    while not env.done():
+        env.step()
+    errors = [math.dist(robot.sensors[0].data[:2], robot.state[:2, 0]) for robot in env.robot_list]
+    env.end(ending_time=0)
+    slippage = Slippage([Zone(**zone)], 1.0, track, 0.1)
+    expected = drift_of(Odometry(track=track), LEGS, 0.0, slippage).error
+    assert math.sqrt(np.mean(np.square(errors))) == pytest.approx(expected, rel=0.25)
+
+
+def test_slip_on_the_way_is_told(tmp_path: Any) -> None:
+    def told(zone: dict[str, Any]) -> list[str]:
+        world = {"width": 10, "height": 10, "zones": [{"name": "wet", **zone}]}
+        robot = {"kinematics": {"name": "diff"}, "state": [1, 5, 0], "goal": [9, 5], "perceives": "estimate",
+                 "behavior": {"name": "dash"}, "goal_threshold": 0.3, "sensors": [{"name": "odometry"}]}  # fmt: skip
+        found = read({"world": world, "robot": robot}).diagnostics
+        return [finding.message for finding in found if finding.code == "odometry-drifts"]
+
+    [message] = told({"rectangle": [3, 4, 7, 6], "slip": 0.2})
+    assert "off by 1 m (root mean square) after 8 m of way, mostly by the slip of zone 'wet'" in message
+    assert told({"rectangle": [3, 4, 7, 6], "slip": 0.05}) == []
+    assert told({"rectangle": [3, 6, 7, 8], "slip": 0.5}) == [], "it is beside the way"
+    assert told({"circle": {"center": [5, 5], "radius": 2}, "slip": 1.0})
 
 
 def test_odometry_that_is_lost_before_the_goal_is_told_with_a_value_that_suffices() -> None:

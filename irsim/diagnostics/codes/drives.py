@@ -112,7 +112,8 @@ DRIVES: dict[str, Code] = {
         "odometry that is lost before the goal",
         "'perceives: estimate' without 'localization' goes by wheel odometry, whose errors add up. The finding gives "
         "the root mean square of its error at the end of the straight way through all waypoints, to the first order: "
-        "an error of the heading moves the end by the distance from there to the end; slip of zones comes on top. "
+        "an error of the heading moves the end by the distance from there to the end. The slip of zones on the way "
+        "counts at the largest speed. "
         "Example: heading_noise: 0.05 is off by 0.9 m after 10 m; add {name: localization}, or write a smaller one.",
     ),
     "coarse-steps": Code(

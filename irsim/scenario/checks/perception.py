@@ -14,7 +14,7 @@ from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.resolve.body_size import SizedBody, SizedShape
-from irsim.scenario.resolve.odometry_drift import Drift, drift_of
+from irsim.scenario.resolve.odometry_drift import Drift, Slippage, drift_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 
@@ -62,7 +62,7 @@ def _drifts(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     sensor: Any = record.sensors[place]
     legs = SizedBody(record, SizedShape(record.shape)).legs
     sideways = getattr(record.kinematics, "speeds", 1) == 2
-    drift = drift_of(sensor, legs, None if sideways else record.state[2])
+    drift = drift_of(sensor, legs, None if sideways else record.state[2], _slippage(context, record, sensor))
     if not drift.error > record.goal_threshold:
         return
     worst = max(drift.parts, key=drift.parts.__getitem__)
@@ -76,8 +76,20 @@ def _drifts(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     )
 
 
+def _slippage(context: Context, record: ObjectRecord, sensor: Odometry) -> Slippage | None:
+    """The ground on the way of an object; None if its wheels do not slip."""
+    world, drive = context.resolved.world, record.kinematics
+    if not world.has_grounds or "slip" not in getattr(drive, "feels", ()):
+        return None
+    fastest = record.vel_max[0] if record.vel_max and math.isfinite(record.vel_max[0]) else 0.0
+    beside = (getattr(drive, "track", None) or sensor.track) if hasattr(drive, "track") else None
+    return Slippage(world.zones, max(fastest, 0.1), beside, world.step_time)
+
+
 def _smaller(sensor: Odometry, drift: Drift, key: str, threshold: float) -> str:
     """The value of the worst key with which the error is the threshold, if that key alone can do it."""
+    if key not in type(sensor).model_fields:
+        return ""  # it is the ground, not the sensor
     others = drift.error**2 - drift.parts[key] ** 2
     if not 0 <= others < threshold**2:
         return ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
@@ -113,6 +114,16 @@ class Zone(Options):
         if self.rectangle is not None:
             return rectangle_corners(self.rectangle)
         return self.line or self.polygon or []
+
+    def covers(self, x: float, y: float) -> bool:
+        """Whether a point lies in the area; never in a line."""
+        if self.circle is not None:
+            return math.dist((x, y), self.circle.center) <= self.circle.radius
+        inside, corners = False, [] if self.is_line else self.points
+        for (ax, ay), (bx, by) in zip(corners, [*corners[1:], *corners[:1]], strict=True):
+            if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
+                inside = not inside
+        return inside
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
