@@ -15,6 +15,7 @@ from typing import Any, Literal
 from pydantic import model_validator
 
 from irsim.components.options import BehaviorOptions
+from irsim.options.presets import with_preset
 
 __all__ = ["FITTED", "FittedOptions", "People"]
 
@@ -56,8 +57,4 @@ class FittedOptions(BehaviorOptions):
     @model_validator(mode="before")
     @classmethod
     def _take_fitted(cls, given: Any) -> Any:
-        people = given.get("people") if isinstance(given, Mapping) else None
-        if not isinstance(people, str):
-            return given
-        fitted = FITTED[str(cls.model_fields["name"].default)].get(people, {})
-        return {**fitted, **given}
+        return with_preset(given, "people", FITTED[str(cls.model_fields["name"].default)])

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from irsim.options.presets import with_preset
+
 __all__ = ["SKID_STEER", "SURFACES", "VEHICLES", "Preset", "Surface", "filled"]
 
 Surface = Literal["floor", "asphalt", "grass", "gravel", "sand"]
@@ -28,20 +30,8 @@ class Preset:
 
 
 def filled(data: Any, key: str, usual: str, presets: Mapping[str, Preset]) -> Any:
-    """The keys of a drive; the preset that it names fills in keys that are missing or null.
-
-    Args:
-        data: The mapping as given.
-        key: Key with the name of the preset.
-        usual: Name of the preset if the mapping names no other.
-        presets: The presets by name.
-    """
-    if not isinstance(data, Mapping):
-        return data
-    name = data.get(key, usual)
-    if not isinstance(name, str) or name not in presets:
-        return data
-    return {**data, **{k: v for k, v in presets[name].values.items() if data.get(k) is None}}
+    """The keys of a drive, with those of the preset that it names for keys that are missing or null."""
+    return with_preset(data, key, {name: one.values for name, one in presets.items()}, usual=usual, nulls=True)
 
 
 def _tracks(track: float, spread: float) -> dict[str, float]:

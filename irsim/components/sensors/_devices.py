@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from irsim.options.presets import with_preset
+
 __all__ = ["DEPTH_CAMERAS", "DEVICES", "INFRARED", "SONARS", "Device", "DeviceName", "Source", "with_card"]
 
 DeviceName = Literal[
@@ -60,14 +62,11 @@ class Device:
 
 def with_card(given: Any, cards: Mapping[str, Device]) -> Any:
     """Return the keys of a sensor and of the card that its ``device`` names; keys beside it win."""
-    name = given.get("device") if isinstance(given, Mapping) else None
-    if not isinstance(name, str) or name not in cards:
-        return given
-    card = cards[name].options()
-    realism = given.get("realism", {})
-    if "realism" in card and isinstance(realism, Mapping):
-        return {**card, **given, "realism": {**card["realism"], **realism}}
-    return {**card, **given}
+    presets = {name: card.options() for name, card in cards.items()}
+    full = with_preset(given, "device", presets)
+    if full is given or not isinstance(full.get("realism"), Mapping):
+        return full
+    return {**full, "realism": {**presets[full["device"]].get("realism", {}), **full["realism"]}}
 
 
 def _device(title: str, *parts: tuple[Source, dict[str, Any]]) -> Device:

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 import irsim._core as core
 from irsim.components.sensors._gauges import GaugeOptions
+from irsim.options.presets import with_preset
 from irsim.options.registry import SENSORS
 from irsim.options.units import MetersPerSecondSquared, Number, Radians, RadiansPerSecond, Seconds
 from irsim.options.vectors import Offset
@@ -86,8 +87,7 @@ class Imu(GaugeOptions):
     @model_validator(mode="before")
     @classmethod
     def _take_device(cls, given: Any) -> Any:
-        name = given.get("device") if isinstance(given, Mapping) else None
-        return {**DEVICES[name], **given} if isinstance(name, str) and name in DEVICES else given
+        return with_preset(given, "device", DEVICES)
 
     def resolved(self, zones: list[str]) -> dict[str, Any]:
         """Fields of the kernel that are not as they are written: missing limits."""

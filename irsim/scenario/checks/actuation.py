@@ -9,6 +9,7 @@ from typing import Any
 from irsim.common.text import metres, seconds
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.checks._context import Context, distinct
+from irsim.scenario.checks._lengths import wrong_length
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.actuation import PER_CONTROL, Actuation, per_control
 from irsim.scenario.resolve.body_size import top_speed
@@ -42,7 +43,10 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         value = getattr(options, key)
         if isinstance(value, list) and len(value) != record.vel_dim:
             wrong = True
-            yield _wrong_length(record, (*path, key), key, value)
+            here = (*path, key)
+            edit = Edit("replace", here, value[0]) if len(value) == 1 else None
+            written = f"{value[0]:g}" if edit else None
+            yield wrong_length(record, here, value, or_number=True, written=written, edit=edit)
     if wrong:
         return
     if record.drive_tau > 0 and any(per_control(options.lag, record.vel_dim)):
@@ -66,21 +70,6 @@ def _why_unused(context: Context, record: ObjectRecord) -> str | None:
     if (why := context.why_undriven(record)) is not None:
         return why
     return "is moved by the calling program" if context.scenario.world.step_mode == "external" else None
-
-
-def _wrong_length(record: ObjectRecord, path: Path, key: str, value: list[float]) -> Finding:
-    drive: Any = record.kinematics
-    rows = f" ({', '.join(drive.control_rows)})" if record.vel_dim == len(drive.control_rows) else ""
-    same = Edit("replace", path, value[0]) if len(value) == 1 else None
-    return error(
-        "wrong-length",
-        path,
-        f"'{key}' of '{drive.name}' must be one number, or a list of {record.vel_dim}{rows}, got {len(value)}",
-        given=value,
-        allowed=f"a number, or {record.vel_dim} numbers{rows}",
-        fix=f"{key}: {value[0]:g}" if same else None,
-        edit=same,
-    )
 
 
 def _lag_twice(context: Context, record: ObjectRecord, path: Path) -> Finding:

@@ -9,6 +9,7 @@ from typing import Any
 from irsim.components.options import CustomOptions
 from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.checks._context import Context, distinct
+from irsim.scenario.checks._lengths import wrong_length
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.scenario.yaml.formatting import flow
@@ -110,21 +111,10 @@ def _wrong_length(context: Context, record: ObjectRecord, key: str) -> Finding |
     values = _written_vector(context, record, key)
     if values is None or len(values) == record.vel_dim or record.kinematics is None:  # unused without a drive
         return None
-    drive: Any = record.kinematics
-    rows = f" ({', '.join(drive.control_rows)})" if record.vel_dim == len(drive.control_rows) else ""
-    name = f"'{drive.name}'"
-    path = context.entry_path(record, key)
-    same = Edit("replace", path, values * record.vel_dim) if key in _BROADCAST and len(values) == 1 else None
-    return error(
-        "wrong-length",
-        path,
-        f"'{key}' of {name} must have {record.vel_dim} numbers{rows}, got {len(values)}",
-        given=values,
-        allowed=f"{record.vel_dim} numbers{rows}",
-        fix=f"{key}: {flow(values * record.vel_dim)}" if same else None,
-        edit=same,
-        carry_on=_start_velocity(context, record, values) if key == "velocity" else same,
-    )
+    path, wanted = context.entry_path(record, key), values * record.vel_dim
+    same = Edit("replace", path, wanted) if key in _BROADCAST and len(values) == 1 else None
+    carry_on = _start_velocity(context, record, values) if key == "velocity" else same
+    return wrong_length(record, path, values, written=flow(wanted), edit=same, carry_on=carry_on)
 
 
 def _start_velocity(context: Context, record: ObjectRecord, values: list[float]) -> Edit | None:
