@@ -65,3 +65,10 @@ def test_the_list_has_every_page_once(html: Path) -> None:
     pages = {name.removesuffix(".html") + ".md" for name in read_pages(html)} - {"search.md", "404.md"}
     assert sorted(listed) == sorted(pages)
     assert (html / "llms-full.txt").stat().st_size < 500_000
+
+
+def test_the_list_says_what_pages_are_about(html: Path) -> None:
+    text = (html / "llms.txt").read_text(encoding="utf-8")
+    about = dict(re.findall(r"^- \[.*?\]\((.*?)\.md\)(.*)$", text, re.MULTILINE))
+    assert about["irsim/core/README"].startswith(": The core is a C++17 library")
+    assert len([page for page, sentence in about.items() if not sentence]) <= 3, "lists and tables only"
