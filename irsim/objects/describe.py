@@ -155,6 +155,8 @@ def _lidars(simulation: Simulation, row: int) -> tuple[Lidar, ...]:
                 noise_std=float(chosen.std) if chosen.noise else 0.0,
                 between=between,
                 beam_time=float(chosen.scan_time) * between / (2 * math.pi) if sweeps else 0.0,
+                rate=float(getattr(chosen, "rate", None) or 0.0),
+                latency=float(getattr(chosen, "latency", 0.0)),
             )
         )
     return tuple(lidars)

@@ -143,7 +143,7 @@ def _sectors(scene: Scene, objects: dict[int, ObjectView]) -> list[Mark]:
         lidar = objects[beams.object].sensors[beams.sensor]
         if not isinstance(lidar, Lidar2D) or lidar.angle_max - lidar.angle_min > _FULL_TURN:
             continue
-        (x, y), theta = beams.origin, float(lidar.lidar_origin[2, 0])
+        (x, y), theta = beams.origin, float(lidar.scan_origin[2, 0])
         shape = Sector(x, y, lidar.range_max, theta + lidar.angle_min, theta + lidar.angle_max)
         marks.append(Mark(beams.object, "fov", shape, None, Stroke(beams.color, 0.8, style=":"), 0.6, _SECTOR_ZORDER))
     return marks

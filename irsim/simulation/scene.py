@@ -34,6 +34,8 @@ class Lidar:
         noise_std: Standard deviation of the ranges [m]; 0 without noise.
         between: Angle between neighboring beams [rad].
         beam_time: Time between neighboring beams [s]; 0 if all are measured at once, at the end of a step.
+        rate: Measurements per second [Hz]; 0: one in each step.
+        latency: Time from a measurement until its data arrive [s].
     """
 
     key: str
@@ -48,6 +50,8 @@ class Lidar:
     noise_std: float = 0.0
     between: float = 0.0
     beam_time: float = 0.0
+    rate: float = 0.0
+    latency: float = 0.0
 
     @property
     def lag(self) -> float:

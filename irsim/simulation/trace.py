@@ -26,6 +26,7 @@ __all__ = [
     "cut_trace",
     "gauges",
     "join_traces",
+    "measured_steps",
     "mounted_gauges",
     "next_rows",
     "past_goals",
@@ -289,6 +290,19 @@ def gauges(simulation: Simulation) -> list[tuple[str, list[str], int]]:
     counts = [count for _, _, count in simulation.world.gauges()]
     mounted = zip(mounted_gauges(simulation), counts, strict=True)
     return [(key, [name for name, _ in sensor.numbers()], count) for (_, key, sensor), count in mounted]
+
+
+def measured_steps(rate: float, latency: float, step_time: float, steps: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The steps in which a sensor measured what it shows after some steps; -1 before its first data.
+
+    Args:
+        rate: Measurements per second [Hz]; 0: one in each step.
+        latency: Time from a measurement until its data arrive [s].
+        step_time: Period [s].
+        steps: (T,) numbers of steps.
+    """
+    timing = core.SensorTiming(rate=rate, latency=latency)
+    return np.array([core.shown_step(timing, step_time, step) for step in steps.tolist()], dtype=np.int64)
 
 
 def mounted_gauges(simulation: Simulation) -> list[tuple[int, str, GaugeOptions]]:

@@ -36,8 +36,8 @@ class Scan(Protocol):
     drawing: dict[str, Any] | None
 
     @property
-    def lidar_origin(self) -> Any:
-        """(3, 1) pose of the sensor, world frame."""
+    def scan_origin(self) -> Any:
+        """(3, 1) pose of the sensor when it took the scan, world frame."""
 
     @property
     def range_data(self) -> Any:
@@ -54,11 +54,9 @@ def draw_scan(lidar: Scan, sensor: int = 0, origin: Any = None) -> Beams:
     Args:
         lidar: The lidar.
         sensor: Index among the sensors of the object.
-        origin: Pose of the sensor in the world frame; by default the present one.
+        origin: Pose of the sensor in the world frame; by default the one at which it took the scan.
     """
-    x, y, theta = (
-        np.asarray(lidar.lidar_origin if origin is None else origin, dtype=np.float64).reshape(-1)[:3].tolist()
-    )
+    x, y, theta = np.asarray(lidar.scan_origin if origin is None else origin, dtype=np.float64).reshape(-1)[:3].tolist()
     angles, ranges = lidar.angle_list + theta, lidar.range_data
     ends = np.stack([x + ranges * np.cos(angles), y + ranges * np.sin(angles)], axis=1)
     beams = Beams(

@@ -14,6 +14,7 @@ from irsim.common.arrays import Floats
 from irsim.objects.base import column
 from irsim.objects.sensors.drawing import draw_scan
 from irsim.objects.setters import changed_options, refuse
+from irsim.simulation.trace import past_poses
 
 if TYPE_CHECKING:
     from irsim.objects.base import SimObject
@@ -32,7 +33,7 @@ _VELOCITY_COLORS = frozenset(
 """Drawing options of an FMCW lidar that are read as arrays."""
 _FIXED = frozenset({
     "parent", "obj_id", "sensor_type", "angle_list", "angle_min", "angle_max", "angle_inc", "time_inc", "range_data",
-    "valid", "hits", "velocity", "stamp", "lidar_origin", "cast_angles", "state", "radial_velocity",
+    "valid", "hits", "velocity", "stamp", "lidar_origin", "scan_origin", "cast_angles", "state", "radial_velocity",
 })  # fmt: skip
 """Attributes that cannot be set."""
 _HINT = "it follows from `number`, `angle_range` and the other options, and from the scan"
@@ -198,6 +199,22 @@ class Lidar2D:
     def lidar_origin(self) -> Floats:
         """Pose of the sensor in the world frame, (3, 1): x, y [m], heading [rad]."""
         return self._placed(self._simulation.pose[self.parent.row])
+
+    @property
+    def scan_origin(self) -> Floats:
+        """Pose of the sensor at which it took the scan that it shows, world frame, (3, 1): x, y [m], heading [rad].
+
+        It is the present pose of a sensor that measures in each step, before the first data, and where the environment
+        does not keep the past.
+        """
+        simulation, row = self._simulation, self.parent.row
+        if not getattr(self.options, "is_timed", False) or simulation.copies > 1 or not math.isfinite(self.stamp):
+            return self.lidar_origin
+        step = round(self.stamp / simulation.scenario.world.step_time)
+        poses = past_poses(simulation, row)
+        if poses is None or step >= len(poses) - 1 or not np.isfinite(poses[step]).all():
+            return self.lidar_origin
+        return self._placed(poses[step])
 
     @property
     def cast_angles(self) -> Floats:

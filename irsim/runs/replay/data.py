@@ -30,7 +30,7 @@ from irsim.runs.replay.rows import (
 from irsim.runs.resimulation import initial_scene
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import Event
-from irsim.simulation.trace import Trace
+from irsim.simulation.trace import Trace, measured_steps
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
@@ -57,6 +57,8 @@ _MAX_RANGES = 2_000_000
 """Number of recorded ranges up to which the page shows them; of longer scans it computes the ranges."""
 _MAX_SCANS_BYTES = 700_000
 """Compressed size of the recorded scans up to which the page shows them."""
+_ROW_PARTS = 1000
+"""Number of parts into which the way from row to row is divided."""
 _RANGE_STEPS = 4000
 """Number of steps into which the range of a sensor is divided."""
 
@@ -171,12 +173,15 @@ def _rows(count: int, every: int) -> NDArray[np.int64]:
 def _add_scans(columns: Columns, trace: Trace, rows: NDArray[np.int64], lidars: list[dict[str, Any]]) -> str:
     """Add ``scan0``, … (beams, rows): recorded ranges; a number above :data:`_RANGE_STEPS` means that nothing was hit.
 
+    Of a lidar whose data may be old, ``from0``, … (rows,) says at which row it measured them, in parts of
+    :data:`_ROW_PARTS`; below 0 before the first data.
+
     Returns:
         ``none`` without lidars, ``recorded`` if the page shows recorded ranges of all lidars, else ``computed``.
     """
     if not lidars:
         return "none"
-    keys = [lidar.pop("key") for lidar in lidars]
+    keys, timings = ([lidar.pop(name) for lidar in lidars] for name in ("key", "timing"))
     known = [block if block is not None and len(block) == len(trace) else None for block in map(trace.ranges.get, keys)]
     if sum(0 if block is None else block.shape[1] * len(rows) for block in known) > _MAX_RANGES:
         return "computed"
@@ -196,7 +201,17 @@ def _add_scans(columns: Columns, trace: Trace, rows: NDArray[np.int64], lidars: 
         columns.add(f"scan{number}", values, 1)
         lidar["scan"] = f"scan{number}"
         lidar["quantum"] = quantum
+        if any(timings[number]):
+            columns.add(f"from{number}", _measured(trace, rows, *timings[number]), 2)
+            lidar["from"] = f"from{number}"
     return scans
+
+
+def _measured(trace: Trace, rows: NDArray[np.int64], rate: float, latency: float) -> NDArray[np.int64]:
+    """(rows,) places between the shown rows at which a lidar measured what it shows; -1 before its first data."""
+    steps = measured_steps(rate, latency, trace.step_time, trace.step[rows])
+    places = np.interp(steps, trace.step[rows], np.arange(len(rows))) * _ROW_PARTS
+    return np.where(steps < 0, -1, np.rint(places)).astype(np.int64)
 
 
 def _ending(run: Run) -> dict[str, Any]:

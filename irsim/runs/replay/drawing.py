@@ -33,7 +33,7 @@ def page_objects(scene: SceneDescription) -> tuple[list[dict[str, Any]], list[di
     Returns:
         The distinct shapes, each in its own frame; the objects in the order of the trace, with the index of their
         ``shape``; the lidars, with the index of their ``object``, their ``pose`` in the frame of the object, and the
-        ``key`` of their ranges in the trace.
+        ``key`` of their ranges in the trace, and their ``timing``: rate and latency.
     """
     shapes: dict[str, int] = {}
     objects, lidars = list[dict[str, Any]](), list[dict[str, Any]]()
@@ -111,6 +111,7 @@ def _lidar(lidar: Lidar, row: int) -> dict[str, Any]:
     return {
         "object": row,
         "key": lidar.key,
+        "timing": (lidar.rate, lidar.latency),
         "pose": [_rounded(value) for value in lidar.mount],
         "beams": lidar.beams,
         "first": lidar.angle_min,

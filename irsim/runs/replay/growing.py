@@ -86,7 +86,7 @@ class GrowingRun:
         scans = "computed" if scene["lidars"] else "none"
         head = page_head(scene, {**about, **more}, last_step=self._last, every=self._every, scans=scans)
         for lidar in scene["lidars"]:
-            del lidar["key"]
+            del lidar["key"], lidar["timing"]
         self.head = columns.block(head, _FASTEST)
 
     def look(self, *, last: bool = False) -> None:

@@ -43,6 +43,7 @@ export function makeRun({ head, columns }) {
   run.movers = moving.sort((one, other) => (one.role === "robot") - (other.role === "robot")); // robots on top
   for (const lidar of head.lidars) {
     lidar.ranges = lidar.scan ? columns[lidar.scan] : null;
+    lidar.measured = lidar.from ? columns[lidar.from] : null; // the place between rows of each shown scan
     if (!run.lidars.has(lidar.object)) run.lidars.set(lidar.object, []);
     run.lidars.get(lidar.object).push(lidar);
   }

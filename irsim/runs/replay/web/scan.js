@@ -3,10 +3,13 @@
 import { castCells } from "./cells.js";
 import { isAbsent, poseAt } from "./run.js";
 
+const ROW_PARTS = 1000; // as in data.py
+
 /** { x, y, ends: Float32Array [x, y, …], hit: Uint8Array, recorded } of a lidar at a moment. */
 export function scanAt(run, lidar, at) {
-  const moment = lidar.ranges ? Math.floor(at) : at;
-  const pose = poseAt(run, lidar.object, moment), [px, py, turn] = lidar.pose;
+  const moment = lidar.ranges ? Math.floor(at) : at, measured = lidar.measured?.[moment] ?? -1;
+  // Data that came late were seen from where the robot was then.
+  const pose = poseAt(run, lidar.object, measured < 0 ? moment : measured / ROW_PARTS), [px, py, turn] = lidar.pose;
   const c = Math.cos(pose.heading), s = Math.sin(pose.heading);
   const x = pose.x + c * px - s * py, y = pose.y + s * px + c * py, heading = pose.heading + turn;
   const ends = new Float32Array(2 * lidar.beams), hit = new Uint8Array(lidar.beams);
