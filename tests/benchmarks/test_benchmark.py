@@ -153,6 +153,22 @@ def test_noise_that_no_policy_reads_is_not_chance() -> None:
     assert len(irsim.benchmark(foggy, ["dash"], seeds=5).episodes) == 5  # the fog is lifted by what the lidar has seen
 
 
+@pytest.mark.parametrize(
+    ("keys", "policy"),
+    [
+        ({"perceives": "estimate", "sensors": [{"name": "localization", "position_std": 0.05}]}, "orca"),
+        ({"sensors": [{"name": "lidar2d", "range_max": 4, "realism": {"dropout": 0.2}}]}, "goal_lidar"),
+    ],
+)
+def test_errors_of_what_a_robot_decides_from_are_chance(keys, policy) -> None:
+    robot = {"kinematics": {"name": "diff"}, "shape": {"name": "circle", "radius": 0.25}, "state": [1, 5, 0], **keys}
+    post = {"shape": {"name": "circle", "radius": 0.4}, "state": [5, 5.2, 0]}
+    world = {"width": 10, "height": 10, "time_limit": 20}
+    text = json.dumps({"world": world, "robot": [{**robot, "goal": [9, 5]}], "obstacle": [post]}, indent=1)
+    one, other = irsim.benchmark(text, [policy], seeds=2).episodes
+    assert one.metrics["path_length"] != other.metrics["path_length"]
+
+
 def test_a_behavior_that_draws_random_numbers_runs_with_every_seed(files) -> None:
     result = irsim.benchmark(files[1], ["dash", "avocado"], seeds=3)
     [note] = result.notes

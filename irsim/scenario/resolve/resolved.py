@@ -356,8 +356,11 @@ def _of_object(record: ObjectRecord) -> list[str]:
         "motion noise": getattr(drive, "noise", False) and not record.static,
         "actuation noise": record.actuation is not None and record.actuation.is_noisy and not record.static,
         "sensor noise": any(
-            getattr(sensor, "noise", False) or getattr(sensor, "velocity_noise_std", 0.0) for sensor in record.sensors
+            getattr(sensor, key, None)
+            for sensor in record.sensors
+            for key in ("noise", "velocity_noise_std", "realism")
         ),
+        "perception": record.perceives != "truth" and not record.static,
         "decisions": any(isinstance(behavior, BehaviorOptions) and behavior.draws() for behavior in behaviors)
         and not record.static,
         "planners": any(getattr(planner, "name", planner) in _SAMPLING_PLANNERS for planner in planners),
