@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 import webbrowser
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +15,8 @@ from irsim.bundled import templates
 from irsim.cli.output import console
 from irsim.common.screen import has_screen
 from irsim.diagnostics.errors import InputError
+from irsim.runs.files import RunError
+from irsim.runs.store import find_run
 from irsim.studio.studio import Studio
 
 __all__ = ["studio"]
@@ -24,7 +27,10 @@ _LOOK_S = 0.5
 def studio(
     what: Annotated[
         str | None,
-        typer.Argument(metavar="[FILE|TEMPLATE]", help="The scenario to open. Default: the page offers them."),
+        typer.Argument(
+            metavar="[FILE|TEMPLATE|RUN]",
+            help="The scenario to open, or a recorded run (its id, or 'last'). Default: the page offers them.",
+        ),
     ] = None,
     port: Annotated[
         int,
@@ -58,8 +64,8 @@ def studio(
         made.close()
 
 
-def _place(what: str | None) -> tuple[Path, str | None]:
-    """The folder of the studio, and what the page opens first: the name of a file in it, or of a template."""
+def _place(what: str | None) -> tuple[Path, dict[str, str] | None]:
+    """The folder of the studio, and its first scenario: a file in it, a template, or a run."""
     here = Path.cwd()
     if what is None:
         return here, None
@@ -67,9 +73,11 @@ def _place(what: str | None) -> tuple[Path, str | None]:
     if file.is_file():
         inside = file.resolve().is_relative_to(here.resolve())
         root = here if inside else file.resolve().parent
-        return root, file.resolve().relative_to(root.resolve()).as_posix()
+        return root, {"name": file.resolve().relative_to(root.resolve()).as_posix()}
     if what in templates.names():
-        return here, what
+        return here, {"template": what}
+    with suppress(RunError):
+        return here, {"run": find_run(what, here).name}
     near = templates.meant(what)
     fix = f"irsim studio {near}" if near else "irsim templates lists the templates; name one, or a file that exists"
-    raise InputError(f"'{what}' is neither a file nor a template", fix, where="what")
+    raise InputError(f"'{what}' is neither a file nor a template nor a recorded run", fix, where="what")

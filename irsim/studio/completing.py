@@ -6,14 +6,13 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-import yaml
-
-from irsim.common.yaml.tree import LOADER
+from irsim.common.yaml.compose import compose
 from irsim.diagnostics.diagnostic import Path
 from irsim.lookup.answer import first_sentence
 from irsim.lookup.language import language_schema
 from irsim.lookup.schema_walk import Node, alternatives, component_name, key, mappings
 from irsim.lookup.synonyms import EVERYDAY
+from irsim.scenario.limits import DEFAULT_LIMITS
 
 __all__ = ["complete"]
 
@@ -62,11 +61,9 @@ def _parsed(lines: list[str], at: int, start: int, end: int) -> Iterator[tuple[b
         if is_key and after.lstrip().startswith(":"):
             mark = _MARK
         for rest, below in ((after, lines[at + 1 :]), (_closing(before), [])):
-            try:
-                made = yaml.load("\n".join([*lines[:at], f"{before}{mark}{rest}", *below]), Loader=LOADER)
-            except (yaml.YAMLError, ValueError, RecursionError):
-                continue
-            yield is_key, made
+            made = compose("\n".join([*lines[:at], f"{before}{mark}{rest}", *below]), DEFAULT_LIMITS)
+            if not made.fatal:
+                yield is_key, made.data
 
 
 def _closing(before: str) -> str:

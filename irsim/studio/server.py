@@ -44,8 +44,8 @@ class Refused(Exception):
     """
 
     def __init__(self, status: int, why: str) -> None:
-        super().__init__(why)
-        self.status = status
+        super().__init__(status, why)
+        self.status, self.why = status, why
 
 
 class Server:
@@ -135,4 +135,4 @@ async def given(request: Request) -> dict[str, Any]:
 
 def _refusal(_: Request, error: Exception) -> Response:
     assert isinstance(error, Refused)
-    return PlainTextResponse(str(error), error.status, {"Connection": "close"})
+    return PlainTextResponse(error.why, error.status, {"Connection": "close"})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,10 @@ from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
 from irsim.bundled import templates
+from irsim.diagnostics.errors import IrsimError
 from irsim.graphics.scene.theme import css_variables
+from irsim.policies.description import list_policies
+from irsim.runs.reading import open_run
 from irsim.runs.replay.page import WEB as PLAYER
 from irsim.runs.replay.page import player
 from irsim.studio.feed import Feed
@@ -34,8 +37,10 @@ _POLICY = (
 """CodeMirror writes its style sheets from its script."""
 _MOST = 2_000_000
 """Size of the largest body with a text [bytes]."""
-_KEYS = ("text", "seed", "steps", "edits", "line", "column")
+_KEYS = ("text", "seed", "seeds", "steps", "policy", "edits", "line", "column")
 """Keys of a job that the page may write."""
+_NOT_OFFERED = ("replay", "mixed", "process", "neupan", "rl_rvo_authors")
+"""Policies that need options or programs, which a scenario names."""
 _CHECK_S, _RUN_S = 20.0, 120.0
 """Longest time of a check or an edit, and of a run [s]."""
 
@@ -46,13 +51,14 @@ class Studio:
     Args:
         root: Folder of the files; nothing outside of it is read or written.
         port: Port of the server; 0 chooses a free one.
-        first: Name of the file or template that the page opens; None: it opens its own choice.
+        first: The scenario that the page opens: a file by ``name``, a ``template``, or a ``run`` by its id; None: the
+            page chooses.
 
     Raises:
         InputError: The port cannot be used.
     """
 
-    def __init__(self, root: Path, port: int = 0, first: str | None = None) -> None:
+    def __init__(self, root: Path, port: int = 0, first: Mapping[str, str] | None = None) -> None:
         self.files = Workspace(root)
         self._first = first
         self._reader, self._runner = Worker(self.files.root), Worker(self.files.root)
@@ -64,6 +70,7 @@ class Studio:
             "/check": partial(self._ask, "check"),
             "/edit": partial(self._ask, "edit"),
             "/complete": partial(self._ask, "complete"),
+            "/page": self._export,
         }
         routes = [
             Route("/", self._page, methods=["GET"]),
@@ -90,13 +97,19 @@ class Studio:
 
     def _list(self, _: dict[str, Any]) -> Any:
         kinds = [{"name": one.name, "title": one.title} for one in templates.load_all()]
-        return {"files": self.files.names(), "templates": kinds, "first": self._first, "folder": str(self.files.root)}
+        drivers = [{"name": one.name, "about": one.about} for one in list_policies() if one.name not in _NOT_OFFERED]
+        known = {"files": self.files.names(), "templates": kinds, "policies": drivers}
+        return {**known, "first": self._first, "folder": str(self.files.root)}
 
     def _open(self, wanted: dict[str, Any]) -> Any:
         if (name := wanted.get("template")) is not None:
             if name not in templates.names():
                 raise Refused(404, f"there is no template '{name}'")
             return {"name": f"{name}.yaml", "text": templates.scenario_file(name).read_text("utf-8"), "mark": None}
+        if (run := wanted.get("run")) is not None:
+            opened = open_run(str(run), self.files.root)
+            about = {"name": f"{opened.id}.yaml", "text": opened.scenario_text, "mark": None}
+            return {**about, "seed": int(opened.meta["seed"])}
         text, mark = self.files.read(_text(wanted, "name"))
         return {"name": wanted["name"], "text": text, "mark": mark}
 
@@ -108,6 +121,9 @@ class Studio:
 
     def _ask(self, task: str, wanted: dict[str, Any]) -> Any:
         return self._reader.ask(task, _CHECK_S, **self._job(wanted))
+
+    def _export(self, wanted: dict[str, Any]) -> Any:
+        return self._runner.ask("page", _RUN_S, **self._job(wanted))
 
     def _job(self, wanted: dict[str, Any]) -> dict[str, Any]:
         """A job as the page may describe it, for the text of a file of the folder, or for a new text."""
@@ -129,7 +145,7 @@ async def _answered(task: Callable[[dict[str, Any]], Any], request: Request) -> 
     wanted = await given(request)
     try:
         return JSONResponse(await anyio.to_thread.run_sync(task, wanted))
-    except (FileRefused, TooSlow, ValueError) as error:
+    except (FileRefused, IrsimError, TooSlow, ValueError) as error:
         return JSONResponse({"why": str(error)})
 
 

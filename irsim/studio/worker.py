@@ -18,7 +18,7 @@ from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.studio.checking import check
 from irsim.studio.completing import complete
 from irsim.studio.editing import NotEdited, edit
-from irsim.studio.running import run
+from irsim.studio.running import page_of, run
 
 __all__ = ["main"]
 
@@ -76,10 +76,15 @@ def _run(job: Mapping[str, Any], put: Put) -> Any:
     return run(job, _limits(job), put)
 
 
+def _page(job: Mapping[str, Any], put: Put) -> Any:
+    return page_of(job, _limits(job))
+
+
 _TASKS: dict[str, Callable[[Mapping[str, Any], Put], Any]] = {
     "warm": _warm,
     "check": _check,
     "complete": _complete,
     "edit": _edit,
     "run": _run,
+    "page": _page,
 }

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.common.child import ONE_THREAD, Child, python
-from irsim.studio.feed import FAILED, RESULT, Feed
+from irsim.studio.feed import FAILED, Feed
 
 __all__ = ["TooSlow", "Worker"]
 
@@ -53,7 +53,7 @@ class Worker:
             return self._answer(task, seconds, job, None)
 
     def run(self, feed: Feed, seconds: float, **job: Any) -> None:
-        """Do a run, whose frames and whose result go to a feed, which is closed at its end; returns at once."""
+        """Do runs, whose frames and results go to a feed, which is closed at their end; returns at once."""
         threading.Thread(target=self._run, args=(feed, seconds, job), daemon=True).start()
 
     def stop(self) -> None:
@@ -67,8 +67,7 @@ class Worker:
     def _run(self, feed: Feed, seconds: float, job: dict[str, Any]) -> None:
         with self._turn:
             try:
-                result = self._answer("run", seconds, job, feed.put)
-                feed.put(RESULT, json.dumps(result).encode())
+                self._answer("run", seconds, job, feed.put)
             except (TooSlow, ValueError) as error:
                 feed.put(FAILED, str(error).encode())
             finally:

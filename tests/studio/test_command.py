@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+import irsim
 from irsim.cli.app import app
 from irsim.cli.studio import _place
 from tests.cli.conftest import CRASH
@@ -80,9 +81,12 @@ def test_the_folder_is_the_current_one_or_that_of_the_file(tmp_path: Path, monke
     (tmp_path / "out.yaml").touch()
     monkeypatch.chdir(tmp_path / "here")
     assert _place(None) == (tmp_path / "here", None)
-    assert _place("in.yaml") == (tmp_path / "here", "in.yaml")
-    assert _place("../out.yaml") == (tmp_path, "out.yaml")
-    assert _place("crossing") == (tmp_path / "here", "crossing")
+    assert _place("in.yaml") == (tmp_path / "here", {"name": "in.yaml"})
+    assert _place("../out.yaml") == (tmp_path, {"name": "out.yaml"})
+    assert _place("crossing") == (tmp_path / "here", {"template": "crossing"})
+    run = irsim.run(text=CRASH, seed=3, record=True)
+    assert _place("last") == (tmp_path / "here", {"run": run.run_id})
+    assert _place(str(run.run_id)) == (tmp_path / "here", {"run": run.run_id})
 
 
 def test_what_is_neither_a_file_nor_a_template_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

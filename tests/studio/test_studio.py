@@ -23,7 +23,7 @@ pytestmark = pytest.mark.one_python
 @pytest.fixture
 def studio(tmp_path: Path) -> Iterator[Studio]:
     (tmp_path / "crash.yaml").write_text(CRASH, encoding="utf-8")
-    made = Studio(tmp_path, first="crash.yaml")
+    made = Studio(tmp_path, first={"name": "crash.yaml"})
     yield made
     made.close()
 
@@ -94,6 +94,33 @@ def test_a_run_is_that_of_irsim_run(page: Client) -> None:
     [(kind, why)] = frames(page, text=CRASH.replace("robot", "robt"))
     assert kind == FAILED
     assert b"unknown" in why
+
+
+def test_several_seeds_are_run_one_after_the_other_and_a_policy_drives(page: Client) -> None:
+    text = CRASH.replace("behavior: {name: dash}", "behavior: {name: rvo}")
+    taken = frames(page, text=text, seeds=[4, 5], policy="dash")
+    results = [json.loads(content) for kind, content in taken if kind == RESULT]
+    assert [one["seed"] for one in results] == [4, 5]
+    assert [one["behavior"] for one in results] == ["dash", "dash"]
+    assert [kind for kind, _ in taken].count(BEGIN) == 2
+    [(kind, why)] = frames(page, text=text, policy="dahs")
+    assert kind == FAILED
+    assert b"dash" in why
+    [(kind, why)] = frames(page, text=text, policy="../model.npz")
+    assert kind == FAILED
+    names = [one["name"] for one in asked(page, "/files")["policies"]]
+    assert {"as-written", "orca", "dash", "goal_lidar"} <= set(names)
+    assert "process" not in names
+
+
+def test_a_recorded_run_is_opened_and_a_run_becomes_a_page(page: Client, studio: Studio) -> None:
+    run = irsim.run(text=CRASH, seed=3, record=studio.files.root / ".irsim" / "runs" / "kept-1a2b3c")
+    opened = asked(page, "/open", run="kept-1a2b3c")
+    assert (opened["text"], opened["seed"], opened["mark"]) == (CRASH, run.seed, None)
+    assert "no run" in asked(page, "/open", run="nothing-123456")["why"]
+    html = asked(page, "/page", text=CRASH, seed=3)["html"]
+    assert html.startswith("<!doctype html>")
+    assert "default-src 'none'" in html
 
 
 def test_files_are_read_and_written_only_in_the_folder(page: Client, tmp_path: Path) -> None:

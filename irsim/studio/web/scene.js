@@ -8,6 +8,7 @@ import { goalAt, poseAt } from "./run.js";
 
 const SNAP = 0.05, TURN = Math.PI / 12, NEAR = 11; // metres, radians, pixels
 const HANDLE = 26; // pixels from the edge of a body to the handle that turns it
+const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const round = (value, digits = 2) => Number(value.toFixed(digits));
 
 export const scene = { places: [], chosen: -1, drag: null };
@@ -70,7 +71,7 @@ function moveTo(index, x, y, heading) {
 }
 
 /** Listen to the pointer before the player does; `edit(edits)` writes into the text, `picked(index)` says what is chosen. */
-export function listenToScene({ edit, picked, refuse }) {
+export function listenToScene({ edit, picked, refuse, remove, duplicate }) {
   const view = $("view");
 
   view.addEventListener("pointerdown", (event) => {
@@ -137,6 +138,24 @@ export function listenToScene({ edit, picked, refuse }) {
       event.stopImmediatePropagation();
     }
   }, true);
+
+  view.addEventListener("keydown", (event) => {
+    const place = scene.places[scene.chosen], way = WAYS[event.key], { ctrlKey, metaKey, altKey, shiftKey } = event;
+    if (!place || player.run.rows > 1 || altKey) return;
+    const control = ctrlKey || metaKey;
+    if (!control && (event.key === "Delete" || event.key === "Backspace")) remove();
+    else if (control && event.key.toLowerCase() === "d") duplicate();
+    else if (!control && way && place.pose) nudge(way, (shiftKey ? 10 : 1) * SNAP);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  });
+
+  function nudge([right, up], by) {
+    const { x, y, heading } = poseAt(player.run, scene.chosen, 0), to = [round(x + right * by), round(y + up * by)];
+    moveTo(scene.chosen, ...to, heading);
+    edit([{ action: "numbers", path: scene.places[scene.chosen].pose, value: to }]);
+  }
 
   function choose(index) {
     scene.chosen = index;

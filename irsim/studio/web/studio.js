@@ -4,9 +4,11 @@ import { $, element } from "./dom.js";
 import { ask, BEGIN, END, enter, FAILED, receive, RESULT, ROWS } from "./feed.js";
 import { actions, begin, extend, finish, player, say, show } from "./player.js";
 import { drawChosen, listenToScene, scene } from "./scene.js";
+import { addToStrip, beginStrip } from "./seeds.js";
 import { makeText } from "./text.js";
 
 const WAIT = 100; // milliseconds without a key until the text is checked
+const MANY = 20; // seeds of the strip
 const NEW = {
   robot: { kinematics: { name: "diff" }, shape: { name: "circle", radius: 0.2 }, behavior: { name: "dash" } },
   circle: { shape: { name: "circle", radius: 0.4 } },
@@ -33,7 +35,7 @@ const text = makeText($("editor"), {
 });
 
 const seed = () => ($("seed").value === "" ? null : Number($("seed").value));
-const asked = () => ({ text: text.get(), name: file.name, seed: seed() });
+const asked = () => ({ text: text.get(), name: file.name, seed: seed(), policy: $("policy").value || null });
 
 /** Check the text, and show the scene that it describes. */
 async function check() {
@@ -128,30 +130,60 @@ function stop() {
   running?.abort();
   running = null;
   $("run").textContent = "Run";
+  $("many").textContent = "20 seeds";
 }
 
-/** Simulate the text; what is simulated is played at once. */
-async function run() {
+const told = (content) => JSON.parse(new TextDecoder().decode(content));
+
+/** Simulate the text; `take(kind, content)` gets the frames. */
+async function simulate(button, more, take) {
   if (running) {
     stop();
     check();
     return;
   }
   const mine = running = new AbortController();
-  $("run").textContent = "Stop";
+  button.textContent = "Stop";
   try {
-    await receive("/run", asked(), async (kind, number, content) => {
+    await receive("/run", { ...asked(), ...more }, async (kind, number, content) => {
       if (running !== mine) return;
-      if (kind === BEGIN) await show(content, true);
-      else if (kind === ROWS) await extend(content);
-      else if (kind === END) finish(JSON.parse(new TextDecoder().decode(content)));
-      else if (kind === RESULT) state(JSON.parse(new TextDecoder().decode(content)).summary, "good");
-      else if (kind === FAILED) state(new TextDecoder().decode(content), "error");
+      if (kind === FAILED) state(new TextDecoder().decode(content), "error");
+      else await take(kind, content);
     }, mine.signal);
   } catch (problem) {
     if (problem.name !== "AbortError") state(`The run was lost: ${problem.message}`, "error");
   }
   if (running === mine) stop();
+}
+
+/** Simulate one episode, which is played while it is simulated. */
+const run = () => simulate($("run"), {}, async (kind, content) => {
+  if (kind === BEGIN) await show(content, true);
+  else if (kind === ROWS) await extend(content);
+  else if (kind === END) finish(told(content));
+  else if (kind === RESULT) sayResult(told(content));
+});
+
+function sayResult({ summary, reason, outcome }) {
+  state(reason ? `${summary}. ${reason}` : summary, outcome === "success" ? "good" : "error");
+}
+
+/** Simulate several seeds, and show how each ends. */
+function runMany() {
+  const outcomes = new Map();
+  let one = null;
+  if (!running) beginStrip();
+  return simulate($("many"), { seeds: Array.from({ length: MANY }, (_, k) => k) }, async (kind, content) => {
+    if (kind === BEGIN) one = { blocks: [content] };
+    else if (kind === ROWS) one.blocks.push(content);
+    else if (kind === END) one.ending = told(content);
+    else if (kind === RESULT) {
+      one.result = told(content);
+      outcomes.set(one.result.outcome, (outcomes.get(one.result.outcome) ?? 0) + 1);
+      await addToStrip(one);
+      state([...outcomes].map(([outcome, count]) => `${count} × ${outcome}`).join(", "), outcomes.size === 1 && outcomes.has("success") ? "good" : "");
+    }
+  });
 }
 
 /** Words that fit at the cursor, for the editor: it asks after letters, and when the user does. */
@@ -162,6 +194,20 @@ async function complete(context) {
   if (answer.why || !answer.options.length) return null;
   const options = answer.options.map(({ label, apply, detail, info, kind }) => ({ label, apply, detail, type: kind, info: info || undefined }));
   return { from: from + answer.column, options, filter: false };
+}
+
+/** Have the browser keep the run of the text as a page of its own. */
+async function download() {
+  state("The page is being made …", "");
+  const answer = await ask("/page", asked());
+  if (answer.why) {
+    state(answer.why, "error");
+    return;
+  }
+  const address = URL.createObjectURL(new Blob([answer.html], { type: "text/html" }));
+  element("a", { href: address, download: `${file.name.replace(/\.ya?ml$/, "")}.html` }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 10000);
+  state("The page is in your downloads.", "good");
 }
 
 const isChanged = () => text.get() !== file.text;
@@ -194,6 +240,8 @@ async function open(choice) {
   }
   Object.assign(file, { name: answer.name, mark: answer.mark, text: answer.text });
   $("filename").value = answer.name;
+  if (answer.seed !== undefined) $("seed").value = answer.seed;
+  $("seeds").hidden = true;
   fits = true;
   scene.chosen = -1;
   text.open(answer.text);
@@ -202,22 +250,26 @@ async function open(choice) {
 }
 
 async function offer() {
-  const { files, templates, first } = await ask("/files", {});
+  const { files, templates, policies, first } = await ask("/files", {});
+  const chosen = $("policy").value;
+  $("policy").replaceChildren(...policies.map(({ name, about }) => element("option", {
+    value: name === "as-written" ? "" : name, textContent: name === "as-written" ? "as written" : name, title: about,
+  })));
+  $("policy").value = chosen;
   const group = (label, options) => element("optgroup", { label }, ...options);
   $("file").replaceChildren(
     element("option", { value: "", textContent: "Open …" }),
     group("Files", files.map((name) => element("option", { value: `name ${name}`, textContent: name }))),
     group("Templates", templates.map(({ name, title }) => element("option", { value: `template ${name}`, textContent: `${name}: ${title}` }))),
   );
-  return { files, templates, first };
+  return { first };
 }
 
 async function start() {
   await enter();
-  const { files, templates, first } = await offer();
-  const isTemplate = templates.some(({ name }) => name === first) && !files.includes(first);
-  const choice = first ? (isTemplate ? { template: first } : { name: first }) : { template: "crossing" };
-  await open(choice);
+  const { first } = await offer();
+  await open(first ?? { template: "crossing" });
+  if (first?.run) await run();
 }
 
 $("file").addEventListener("change", () => {
@@ -228,6 +280,8 @@ $("file").addEventListener("change", () => {
 });
 $("save").addEventListener("click", save);
 $("run").addEventListener("click", run);
+$("many").addEventListener("click", runMany);
+$("page").addEventListener("click", download);
 $("seed").addEventListener("change", check);
 $("duplicate").addEventListener("click", duplicate);
 $("remove").addEventListener("click", remove);
@@ -236,6 +290,8 @@ addEventListener("beforeunload", (event) => isChanged() && event.preventDefault(
 listenToScene({
   edit,
   picked: pick,
+  remove,
+  duplicate,
   refuse: (index, why) => say(`${player.run.objects[index].name} cannot be dragged: ${why}.`),
 });
 player.over = drawChosen;

@@ -34,7 +34,7 @@ Open = Callable[..., Any]
 def opened(chromium: Any, tmp_path: Path) -> Iterator[Any]:
     """The page with a file; afterwards: it wrote nothing to the console, and asked its server only."""
     (tmp_path / "hall.yaml").write_text(SCENE, encoding="utf-8")
-    studio = Studio(tmp_path, first="hall.yaml")
+    studio = Studio(tmp_path, first={"name": "hall.yaml"})
     context = chromium.new_context(viewport={"width": 1280, "height": 800}, color_scheme="light")
     page = context.new_page()
     problems, addresses = list[str](), list[str]()
@@ -42,7 +42,7 @@ def opened(chromium: Any, tmp_path: Path) -> Iterator[Any]:
     page.on("pageerror", lambda error: problems.append(str(error)))
     page.on("request", lambda request: addresses.append(request.url))
     page.goto(studio.address)
-    until(page, "document.getElementById('state').className === 'good'")
+    until(page, "document.getElementById('state').className === 'good'", seconds=60)  # processes start meanwhile
     yield page
     origin = studio.address.partition("#")[0]
     context.close()
@@ -154,6 +154,31 @@ def test_what_is_run_is_played_and_an_edit_shows_the_scene_again(opened: Any) ->
     page.fill("#seed", "4")
     page.keyboard.press("Enter")
     until(page, "document.getElementById('outcome').textContent === 'written'")
+
+
+def test_seeds_are_shown_side_by_side_and_one_of_them_is_played(opened: Any) -> None:
+    page = opened
+    page.click("#many")
+    until(page, "document.getElementById('seeds').children.length === 20", seconds=60)
+    until(page, "document.getElementById('many').textContent === '20 seeds'")
+    assert page.inner_text("#state") == "20 × success"
+    fourth = page.locator("#seeds button >> nth=3")
+    assert fourth.inner_text() == "seed 3 success"
+    fourth.click()
+    until(page, "document.getElementById('facts').textContent.includes('seed 3')")
+    assert fourth.get_attribute("aria-pressed") == "true"
+
+
+def test_keys_move_copy_and_remove_the_chosen_object(opened: Any) -> None:
+    page = opened
+    page.mouse.click(*pixel(page, 5, 6.5))
+    page.keyboard.press("ArrowLeft")
+    becomes(page, SCENE.replace("[5, 6.5, 0]", "[4.95, 6.5, 0]"))
+    page.keyboard.press("Shift+ArrowDown")
+    becomes(page, SCENE.replace("[5, 6.5, 0]", "[4.95, 6, 0]"))
+    page.keyboard.press("Delete")
+    until(page, "document.getElementById('view').getAttribute('aria-label').includes('0 other objects')")
+    assert "crate" not in text_of(page)
 
 
 def test_objects_are_added_copied_and_removed(opened: Any) -> None:
