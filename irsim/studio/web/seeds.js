@@ -7,7 +7,7 @@ import { extend, finish, player, show } from "./player.js";
 import { unpack } from "./read.js";
 import { extendRun, makeRun } from "./run.js";
 
-const WIDTH = 120, HEIGHT = 84; // pixels
+const WIDTH = 360, HEIGHT = 252; // pixels, which are shown at a third of their size, so that signs are small
 
 /** An empty strip, which is shown. */
 export function beginStrip() {
@@ -17,7 +17,7 @@ export function beginStrip() {
 
 /** Add a run: its blocks, how it ended, and its result. */
 export async function addToStrip({ blocks, ending, result }) {
-  const canvas = element("canvas", { width: 2 * WIDTH, height: 2 * HEIGHT });
+  const canvas = element("canvas", { width: WIDTH, height: HEIGHT });
   const label = element("span", {}, `seed ${result.seed} `, element("b", { className: result.outcome, textContent: result.outcome }));
   const button = element("button", { type: "button", title: result.reason ?? result.summary }, canvas, label);
   button.setAttribute("aria-pressed", "false");
@@ -36,5 +36,5 @@ export async function addToStrip({ blocks, ending, result }) {
   fit(camera);
   resize(Object.assign(camera, { fitted: false }), WIDTH, HEIGHT);
   const shown = { at: run.rows - 1, robot: -1, trails: true, goals: true, lidar: false, names: false, belief: false };
-  drawFrame(canvas.getContext("2d"), makeDrawing(), run, shown, camera, player.colors, 2, Infinity);
+  drawFrame(canvas.getContext("2d"), makeDrawing(), run, shown, camera, player.colors, 1, Infinity);
 }
