@@ -23,10 +23,10 @@ from irsim.lookup.answer import plain_table
 __all__ = ["GROUPS", "example_of", "model_pages", "text_of", "validation_of", "with_models"]
 
 GROUPS = {
-    "How robots move": ("actuation", "tricycle", "skid_steer", "single_track", "diff_dynamic", "slip"),
-    "What lidars see": ("lidar_noise", "beam_outcomes", "dark_surfaces", "sweep"),
-    "Where robots believe to be": ("odometry", "imu", "gnss", "localization"),
-    "What else they measure": ("detector", "uwb", "sonar", "ir_range"),
+    "Motion": ("actuation", "tricycle", "skid_steer", "single_track", "diff_dynamic", "slip"),
+    "Lidar": ("lidar_noise", "beam_outcomes", "dark_surfaces", "sweep"),
+    "Pose estimates": ("odometry", "imu", "gnss", "localization"),
+    "Other sensors": ("detector", "uwb", "sonar", "ir_range"),
 }
 """Models in the order of the navigation."""
 _TEXTS = Path(__file__).resolve().parent / "realism"
@@ -47,9 +47,9 @@ def text_of(name: str) -> str:
 
 def example_of(name: str) -> str:
     """The scenario in YAML on a model's page."""
-    found = re.findall(r"^```yaml\n(.*?)^```", text_of(name), re.DOTALL | re.MULTILINE)
-    assert len(found) == 1, f"{name}.md has {len(found)} examples in YAML"
-    scenario: str = found[0]
+    examples = re.findall(r"^```yaml\n(.*?)^```", text_of(name), re.DOTALL | re.MULTILINE)
+    assert len(examples) == 1, f"{name}.md has {len(examples)} examples in YAML"
+    scenario: str = examples[0]
     return scenario
 
 
@@ -60,9 +60,9 @@ def validation_of(name: str) -> Validation:
 
 
 def _title(name: str) -> str:
-    found = re.match(r"# (.*)", text_of(name))
-    assert found is not None, f"{name}.md begins with a title"
-    return found[1]
+    heading = re.match(r"# (.*)", text_of(name))
+    assert heading is not None, f"{name}.md begins with a title"
+    return heading[1]
 
 
 def _topics(name: str) -> list[str]:
@@ -104,8 +104,8 @@ def model_pages(where: Mapping[str, str], pictures: Path) -> Iterator[Page]:
 def _page(name: str, one: Validation, where: Mapping[str, str]) -> Page:
     page, title = f"realism/{name}", _title(name)
 
-    def keys(found: re.Match[str]) -> str:
-        topic, *chosen = found[1].split()
+    def keys(comment: re.Match[str]) -> str:
+        topic, *chosen = comment[1].split()
         groups = lookup(topic).groups
         listed = [key for group in groups.values() for key in group if key.name in chosen] or groups["keys"]
         assert not chosen or len(listed) == len(chosen), f"{name}.md: {topic} has not all of {chosen}"
@@ -127,14 +127,14 @@ def _page(name: str, one: Validation, where: Mapping[str, str]) -> Page:
 
 
 def with_models(pages: list[Page]) -> list[Page]:
-    """Pages of which the overview and those of components link the models that they are about."""
+    """The same pages; the overview and the pages of components also link the models that they are about."""
     topics = {name: _topics(name) for names in GROUPS.values() for name in names}
-    found: dict[str, list[str]] = {}
+    models_of: dict[str, list[str]] = {}
     for name, asked in topics.items():
         for path in dict.fromkeys(_component(topic) for topic in asked):
             if path:
-                found.setdefault(path, []).append(name)
-    return [_linked(page, found.get(page.path, [])) for page in pages]
+                models_of.setdefault(path, []).append(name)
+    return [_linked(page, models_of.get(page.path, [])) for page in pages]
 
 
 def _component(topic: str) -> str:

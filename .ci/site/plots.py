@@ -22,7 +22,7 @@ _SAME_BYTES = {"svg.hashsalt": "irsim", "svg.fonttype": "path", "path.simplify":
 
 
 def draw(validation: Validation, folder: Path, name: str) -> None:
-    """Write ``NAME-light.svg`` and ``NAME-dark.svg`` of a comparison; the background is that of the page."""
+    """Write ``NAME-light.svg`` and ``NAME-dark.svg`` of a comparison, with a transparent background."""
     folder.mkdir(parents=True, exist_ok=True)
     for theme in THEMES.values():
         with rc_context({**_SAME_BYTES, "font.size": 10}):

@@ -1,6 +1,6 @@
 """Pages of models on the site: each has its text, a scenario that runs, and a measured value within its tolerance.
 
-The long statistical tests of each model are in tests/core and tests/env; these numbers are those of the plots.
+The long statistical tests of each model are in tests/core and tests/env; these tests check the numbers of the plots.
 """
 
 from __future__ import annotations

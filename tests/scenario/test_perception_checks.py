@@ -117,18 +117,18 @@ def test_the_expected_drift_counts_the_slip_of_zones(
 
 
 def test_slip_on_the_way_is_told(tmp_path: Any) -> None:
-    def told(zone: dict[str, Any]) -> list[str]:
+    def messages(zone: dict[str, Any]) -> list[str]:
         world = {"width": 10, "height": 10, "zones": [{"name": "wet", **zone}]}
         robot = {"kinematics": {"name": "diff"}, "state": [1, 5, 0], "goal": [9, 5], "perceives": "estimate",
                  "behavior": {"name": "dash"}, "goal_threshold": 0.3, "sensors": [{"name": "odometry"}]}  # fmt: skip
-        found = read({"world": world, "robot": robot}).diagnostics
-        return [finding.message for finding in found if finding.code == "odometry-drifts"]
+        diagnostics = read({"world": world, "robot": robot}).diagnostics
+        return [finding.message for finding in diagnostics if finding.code == "odometry-drifts"]
 
-    [message] = told({"rectangle": [3, 4, 7, 6], "slip": 0.2})
+    [message] = messages({"rectangle": [3, 4, 7, 6], "slip": 0.2})
     assert "off by 1 m (root mean square) after 8 m of way, mostly by the slip of zone 'wet'" in message
-    assert told({"rectangle": [3, 4, 7, 6], "slip": 0.05}) == []
-    assert told({"rectangle": [3, 6, 7, 8], "slip": 0.5}) == [], "it is beside the way"
-    assert told({"circle": {"center": [5, 5], "radius": 2}, "slip": 1.0})
+    assert messages({"rectangle": [3, 4, 7, 6], "slip": 0.05}) == []
+    assert messages({"rectangle": [3, 6, 7, 8], "slip": 0.5}) == [], "it is beside the way"
+    assert messages({"circle": {"center": [5, 5], "radius": 2}, "slip": 1.0})
 
 
 def test_odometry_that_is_lost_before_the_goal_is_told_with_a_value_that_suffices() -> None:

@@ -1,4 +1,4 @@
-"""Share of looks in which a detector sees somebody against the logistic curve of the distance."""
+"""Share of looks in which a detector sees a person, beside the logistic curve of the distance."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["validation"]
 
 WORLDS, STEPS = 50, 60
 DISTANCES = np.linspace(1.5, 10.5, 13)
-"""Of the people [m], each in a direction of its own, so that nobody hides another."""
+"""Distances of the people [m]; each stands in a direction of its own, so that no person hides another."""
 COLUMNS = 7
 """Numbers of a track, of which the last one is the number of the object."""
 

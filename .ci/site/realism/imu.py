@@ -1,4 +1,4 @@
-"""Allan deviation of a gyroscope at rest against that of white noise with a wandering bias."""
+"""Allan deviation of a gyroscope at rest, beside the law of white noise with a wandering bias."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from realism.validation import Curve, Validation
 __all__ = ["validation"]
 
 WAY = 2.0
-"""What the wheels turn in each run [m]."""
+"""Distance by which the wheels turn in each run [m]."""
 
 
 def validation(text: str) -> Validation:

@@ -1,4 +1,4 @@
-"""What a page shows of a model: simulated values beside its law, and one measured number with its tolerance."""
+"""The comparison on a model's page: simulated values beside its law, and one measured number with its tolerance."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ class Validation:
     """A model beside its law.
 
     Attributes:
-        x, y: What the axes show, with unit.
-        points: What was simulated.
-        lines: What the law says.
+        x, y: Labels of the axes, with unit.
+        points: Curves of simulated values, drawn as points.
+        lines: Curves of the law, drawn as lines.
         quantity: The measured quantity, as the subject of a sentence.
         measured: Its value in the simulation.
         expected: Its value by the law.
         tolerance: Largest difference of both that passes.
         unit: Unit of the three; empty for a pure number.
-        setup: What was simulated, as a sentence.
+        setup: The simulated situation, as a sentence.
         paths: Whether the plot shows ways in the plane, in which both axes have the same scale.
-        logarithmic: Axes that are logarithmic: ``x``, ``y``, ``xy`` or none.
+        logarithmic: Axes with a logarithmic scale: ``x``, ``y`` or ``xy``; empty if both are linear.
     """
 
     x: str
@@ -87,7 +87,7 @@ class Validation:
 
     @property
     def caption(self) -> str:
-        """What the plot shows and what was measured, in sentences."""
+        """Sentences below the plot: the simulated situation, and the measured value beside the law."""
         return (
             f"{self.setup} {self.quantity}: measured {self.shown(self.measured)}, by the equation "
             f"{self.shown(self.expected)}, tolerance {self.margin}."

@@ -30,7 +30,7 @@ class Preset:
 
 
 def filled(data: Any, key: str, usual: str, presets: Mapping[str, Preset]) -> Any:
-    """The keys of a drive, with those of the preset that it names for keys that are missing or null."""
+    """The keys of a drive; keys that are missing or null have the values of its preset."""
     return with_preset(data, key, {name: one.values for name, one in presets.items()}, usual=usual, nulls=True)
 
 

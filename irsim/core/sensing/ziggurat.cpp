@@ -3,7 +3,7 @@
 namespace irsim {
 namespace {
 
-constexpr std::uint64_t kLaneStep = std::uint64_t{1} << 32;  // from the lane of an attempt to that of the next
+constexpr std::uint64_t kLaneStep = std::uint64_t{1} << 32;  // between the lanes of successive attempts
 
 double curve(double x) { return std::exp(-0.5 * x * x); }
 

@@ -47,8 +47,8 @@ def replay_of_env(env: Any, height: int = HEIGHT_PX) -> Page:
     """The replay of the present episode of an environment, from its start to the present step.
 
     A copy of the environment is moved as the objects moved, with the noise of this episode, so that the page has its
-    contacts, scans, beliefs and tracks. What the copy reports otherwise than the environment in the end, such as
-    odometry after wheels have slipped, is left out, and the page says so.
+    contacts, scans, beliefs and tracks. Sensors whose last reading in the copy differs from the environment, such as
+    odometry after wheels have slipped, are left out, and the page says so.
 
     Args:
         env: The environment.
@@ -110,7 +110,7 @@ def _twist(before: Floats, pose: Floats, *, step_time: float) -> Floats:
 
 
 def _as_reported(trace: Trace, simulation: Simulation) -> tuple[Trace, list[str]]:
-    """The trace of a copy without readings that end otherwise than those of the simulation, and a note about these.
+    """The trace of a copy without readings that end differently in the simulation, and a note that names their sensors.
 
     Poses and tracks are compared by the numbers that the page shows.
     """

@@ -1,6 +1,6 @@
 """Ranks with ideal and realistic sensing: ``python -m tests.benchmarks.reference.realistic_ranks`` writes the page.
 
-Its numbers are of kept episodes: those of a suite ``…_noisy``, and those of its twin without errors with the same
+The numbers come from kept episodes of each suite ``…_noisy`` and of its twin without errors, which has the same
 scenarios, seeds and policies.
 """
 
@@ -49,11 +49,11 @@ noise), and its commands take effect 0.1 s late and through a lag of 0.1 s. The 
 still told exactly, and so is the map.
 
 Shares of episodes in %, over all scenarios under one protocol. *Change* is the difference in success of the same
-scenarios and seeds, realistic minus ideal, in points; brackets are 95 % intervals, computed as those of the
-leaderboard. *Rank* is by success, of equals the mean of their places, and its brackets are the ranks that the intervals
-of the pairs allow. *Collision* is ideal → realistic. *In belief* is the share of episodes in which every robot believed
-to have arrived and none had a contact: above the success, robots rested short of their goal; below it, they had arrived
-and did not believe it yet. *Clearance* is the median of the smallest distances to anything of the ideal episodes, in m:
+scenarios and seeds, realistic minus ideal, in points; brackets are 95 % intervals, computed as on the leaderboard.
+*Rank* is by success, of equals the mean of their places, and its brackets are the ranks that the intervals of the pairs
+allow. *Collision* is ideal → realistic. *In belief* is the share of episodes in which every robot believed that it had
+arrived and no robot had a contact: above the success, robots rested short of their goal; below it, they had arrived and
+did not believe it yet. *Clearance* is the median of the smallest distances to anything of the ideal episodes, in m:
 what a policy has left when places err.
 Kendall's τ-b compares both orders: 1 if they are equal, 0 if they have nothing in common, -1 if one is the other in
 reverse.
@@ -93,7 +93,7 @@ class Comparison(NamedTuple):
         changes: One entry a policy, by the realistic rank.
         pairs: How many pairs of policies there are.
         swapped: Pairs that change places, the one that is better under realistic sensing first.
-        surely: Those of them whose intervals say so on both sides.
+        surely: The swapped pairs whose intervals say so on both sides.
         parted: Number of pairs that differ for sure under realistic sensing only.
         level: Number of pairs that differ for sure under ideal sensing only.
         tau: Kendall's τ-b of both orders.
@@ -109,7 +109,7 @@ class Comparison(NamedTuple):
 
 
 def twins() -> list[str]:
-    """Tables of suites that are twins of others under realistic sensing."""
+    """Names of the tables of suites ``…_noisy``, which repeat a suite under realistic sensing."""
     return [name for name, table in TABLES.items() if table.suite.endswith("_noisy")]
 
 
