@@ -143,6 +143,24 @@ def test_short_and_random_ranges_follow_their_distributions() -> None:
     assert (nothing.valid == 1).mean() == pytest.approx(0.2, abs=0.012)
 
 
+def test_the_likelihood_of_a_mixture_is_its_entropy() -> None:
+    """Beams that hit, fall short, read anything or return nothing (Thrun, Burgard, Fox 2005, table 6.1), all at once."""
+    hit, short, random, lost, std, rate = 0.65, 0.2, 0.1, 0.05, 0.2, 0.5
+    chain = {"dropout": lost, "short_share": short, "short_rate": rate, "random_share": random}
+    state = look(ring(4.0), number=400_000, noise=True, std=std, **chain)
+
+    def density(r: Any) -> Any:
+        gauss = np.exp(-0.5 * ((r - 4.0) / std) ** 2) / (std * math.sqrt(2 * PI))
+        before = np.where(r < 4.0, rate * np.exp(-rate * r) / (1 - math.exp(-4.0 * rate)), 0.0)
+        return hit * gauss + short * before + random / 10.0
+
+    grid = (np.arange(1_000_000) + 0.5) / 100_000
+    entropy = -(density(grid) * np.log(density(grid))).sum() / 100_000 - lost * math.log(lost)
+    read = state.valid == 1
+    likelihood = (np.log(density(state.ranges[read])).sum() + (~read).sum() * math.log(lost)) / read.size
+    assert -likelihood == pytest.approx(entropy, rel=0.005)
+
+
 def test_blind_sectors_see_nothing() -> None:
     state = look(ring(4.0), number=360, blind=[[-0.5, -0.2], [1.0, 2.0]])
     angles = state.beam_angles
