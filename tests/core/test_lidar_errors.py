@@ -144,7 +144,7 @@ def test_short_and_random_ranges_follow_their_distributions() -> None:
 
 
 def test_the_likelihood_of_a_mixture_is_its_entropy() -> None:
-    """Beams that hit, fall short, read anything or return nothing (Thrun, Burgard, Fox 2005, table 6.1), all at once."""
+    """Beams that hit, fall short, read anything or return nothing (Thrun, Burgard, Fox 2005, 6.3), all at once."""
     hit, short, random, lost, std, rate = 0.65, 0.2, 0.1, 0.05, 0.2, 0.5
     chain = {"dropout": lost, "short_share": short, "short_rate": rate, "random_share": random}
     state = look(ring(4.0), number=400_000, noise=True, std=std, **chain)

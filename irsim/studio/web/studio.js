@@ -5,6 +5,7 @@ import { ask, BEGIN, END, enter, FAILED, receive, RESULT, ROWS } from "./feed.js
 import { actions, begin, extend, finish, player, say, show } from "./player.js";
 import { drawChosen, listenToScene, scene } from "./scene.js";
 import { addToStrip, beginStrip } from "./seeds.js";
+import { compare, drawViews, endComparison } from "./compare.js";
 import { makeText } from "./text.js";
 
 const WAIT = 100; // milliseconds without a key until the text is checked
@@ -15,7 +16,7 @@ const NEW = {
   box: { shape: { name: "rectangle", length: 1, width: 0.6 } },
 };
 const file = { name: "scenario.yaml", mark: null, text: "" }; // its text as it was opened or saved; no mark: it is new
-let version = 0, timer = 0, running = null, fits = true;
+let version = 0, timer = 0, running = null, ran = "", fits = true;
 
 const text = makeText($("editor"), {
   changed: () => {
@@ -51,8 +52,9 @@ async function check() {
   list(findings);
   state(answer.summary, findings.some(({ severity }) => severity === "error") || !answer.scene ? "error" : "good");
   if (!answer.scene || scene.drag) return;
-  stop();
   scene.places = answer.objects;
+  if (running && ran === wanted.text) return; // this very text is being run
+  stop();
   const chosen = scene.chosen;
   await show(bytesOf(answer.scene), !fits);
   fits = false;
@@ -127,10 +129,12 @@ async function remove() {
 }
 
 function stop() {
+  endComparison();
   running?.abort();
   running = null;
   $("run").textContent = "Run";
   $("many").textContent = "20 seeds";
+  $("compare").textContent = "Compare";
 }
 
 const told = (content) => JSON.parse(new TextDecoder().decode(content));
@@ -142,7 +146,9 @@ async function simulate(button, more, take) {
     check();
     return;
   }
+  endComparison();
   const mine = running = new AbortController();
+  ran = text.get();
   button.textContent = "Stop";
   try {
     await receive("/run", { ...asked(), ...more }, async (kind, number, content) => {
@@ -164,8 +170,58 @@ const run = () => simulate($("run"), {}, async (kind, content) => {
   else if (kind === RESULT) sayResult(told(content));
 });
 
-function sayResult({ summary, reason, outcome }) {
+function sayResult({ summary, reason, outcome, decisive_step: step }) {
   state(reason ? `${summary}. ${reason}` : summary, outcome === "success" ? "good" : "error");
+  if (step === null) return;
+  const jump = element("button", { type: "button", textContent: `Go to step ${step}` });
+  jump.addEventListener("click", () => {
+    const { run } = player, row = run.step.findIndex((one) => one >= step);
+    actions.play(false);
+    actions.seek(row < 0 ? run.rows - 1 : row);
+  });
+  $("state").append(jump);
+}
+
+/** Let the user choose policies, run each, and show them side by side. */
+async function runCompared() {
+  if (running) {
+    stop();
+    check();
+    return;
+  }
+  const names = await choosePolicies();
+  if (!names.length) return;
+  const runs = [];
+  for (const name of names) {
+    const one = { name: name || "as written", blocks: [] };
+    await simulate($("compare"), { policy: name || null }, (kind, content) => {
+      if (kind === BEGIN || kind === ROWS) one.blocks.push(content);
+      else if (kind === END) one.ending = told(content);
+      else if (kind === RESULT) one.result = told(content);
+    });
+    if (!one.result) return; // it failed, or was stopped
+    runs.push(one);
+  }
+  await compare(runs);
+  state(runs.map(({ name, result }) => `${name}: ${result.outcome}`).join(", "), "");
+}
+
+function choosePolicies() {
+  const boxes = [...$("policy").options].map(({ value, textContent, title }) => {
+    const box = element("input", { type: "checkbox", value, checked: value === $("policy").value });
+    return element("label", { title }, box, ` ${textContent}`);
+  });
+  $("choices").replaceChildren($("choices").firstElementChild, ...boxes);
+  const chosen = () => [...$("choices").querySelectorAll("input:checked")].map(({ value }) => value);
+  $("choices").onchange = () => {
+    $("go").disabled = chosen().length < 2 || chosen().length > 4;
+  };
+  $("choices").onchange();
+  $("choose").returnValue = "";
+  $("choose").showModal();
+  return new Promise((done) => {
+    $("choose").onclose = () => done($("choose").returnValue === "go" ? chosen() : []);
+  });
 }
 
 /** Simulate several seeds, and show how each ends. */
@@ -282,6 +338,11 @@ $("save").addEventListener("click", save);
 $("run").addEventListener("click", run);
 $("many").addEventListener("click", runMany);
 $("page").addEventListener("click", download);
+$("compare").addEventListener("click", runCompared);
+$("single").addEventListener("click", () => {
+  endComparison();
+  check();
+});
 $("seed").addEventListener("change", check);
 $("duplicate").addEventListener("click", duplicate);
 $("remove").addEventListener("click", remove);
@@ -294,6 +355,6 @@ listenToScene({
   duplicate,
   refuse: (index, why) => say(`${player.run.objects[index].name} cannot be dragged: ${why}.`),
 });
-player.over = drawChosen;
+player.over = (context, ratio) => drawViews(ratio) || drawChosen(context, ratio);
 begin();
 start().catch((problem) => say(`This page does not work: ${problem.message}`));

@@ -169,6 +169,38 @@ def test_seeds_are_shown_side_by_side_and_one_of_them_is_played(opened: Any) -> 
     assert fourth.get_attribute("aria-pressed") == "true"
 
 
+def test_policies_are_compared_on_one_clock(opened: Any) -> None:
+    page = opened
+    page.click("#compare")
+    assert page.is_disabled("#go"), "one is no comparison"
+    page.check("#choices input[value=orca]")
+    page.check("#choices input[value=random]")
+    page.click("#go")
+    until(page, "!document.getElementById('compared').hidden", seconds=60)
+    results = [irsim.run(text=SCENE, seed=0, policy=name) for name in (None, "orca", "random")]
+    captions = page.locator("#pictures figcaption").all_inner_texts()
+    names = ("as written", "orca", "random")
+    assert captions == [f"{name} {result.outcome}" for name, result in zip(names, results, strict=True)]
+    cells = page.locator("#differences tr >> nth=2").locator("td").all_inner_texts()
+    assert cells[0] == f"{results[0].sim_time:g} s"
+    assert cells[2].startswith(f"{results[2].sim_time:g} s (")
+    assert int(page.get_attribute("#time", "max")) == max(result.steps for result in results)
+    page.click("#single")
+    until(page, "document.getElementById('outcome').textContent === 'written'")
+
+
+def test_the_step_that_decided_is_a_click_away(opened: Any) -> None:
+    page = opened
+    drag(page, (5, 6.5), (5, 4))
+    until(page, "document.getElementById('picked').textContent === 'crate'")
+    page.click("#run")
+    page.wait_for_selector("#state button")
+    result = irsim.run(text=text_of(page), seed=0)
+    assert page.inner_text("#state button") == f"Go to step {result.decisive_step}"
+    page.click("#state button")
+    until(page, f"Number(document.getElementById('time').value) === {result.decisive_step}")
+
+
 def test_keys_move_copy_and_remove_the_chosen_object(opened: Any) -> None:
     page = opened
     page.mouse.click(*pixel(page, 5, 6.5))
