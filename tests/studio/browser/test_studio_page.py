@@ -75,7 +75,7 @@ def drag(page: Any, start: tuple[float, float], end: tuple[float, float], *, key
 
 
 def becomes(page: Any, text: str) -> None:
-    for _ in range(100):
+    for _ in range(600):
         if text_of(page) == text:
             return
         page.wait_for_timeout(50)
@@ -138,6 +138,7 @@ def test_words_are_completed_from_the_language(opened: Any) -> None:
     page.wait_for_selector(".cm-tooltip-autocomplete")
     assert page.inner_text(".cm-tooltip-autocomplete li >> nth=0").startswith("radius")
     assert "m, default 0.2" in page.inner_text(".cm-tooltip-autocomplete li >> nth=0")
+    page.wait_for_timeout(1000)  # what has just appeared is not accepted by accident
     page.keyboard.press("Enter")
     page.keyboard.type("0.7")
     assert "{shape: {name: circle, radius: 0.7}}" in text_of(page)
@@ -192,7 +193,7 @@ def test_policies_are_compared_on_one_clock(opened: Any) -> None:
 def test_the_step_that_decided_is_a_click_away(opened: Any) -> None:
     page = opened
     drag(page, (5, 6.5), (5, 4))
-    until(page, "document.getElementById('picked').textContent === 'crate'")
+    becomes(page, SCENE.replace("[5, 6.5, 0]", "[5, 4, 0]"))
     page.click("#run")
     page.wait_for_selector("#state button")
     result = irsim.run(text=text_of(page), seed=0)
