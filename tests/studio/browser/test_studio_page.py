@@ -173,7 +173,7 @@ def test_seeds_are_shown_side_by_side_and_one_of_them_is_played(opened: Any) -> 
 def test_policies_are_compared_on_one_clock(opened: Any) -> None:
     page = opened
     page.click("#compare")
-    assert page.is_disabled("#go"), "one is no comparison"
+    assert page.is_disabled("#go"), "one alone cannot be compared"
     page.check("#choices input[value=orca]")
     page.check("#choices input[value=random]")
     page.click("#go")
