@@ -36,7 +36,7 @@ def draw(validation: Validation, folder: Path, name: str) -> None:
 
 
 def _style(axes: Axes, theme: Theme) -> None:
-    """Colours of axes, ticks and grid; there is no frame above and to the right."""
+    """Colour axes, ticks and grid, and leave out the frame above and to the right."""
     axes.grid(color=theme.line, linewidth=0.6)
     axes.set_axisbelow(True)
     axes.tick_params(colors=theme.muted, which="both")

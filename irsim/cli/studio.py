@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import time
-import webbrowser
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
@@ -13,7 +11,6 @@ import typer
 
 from irsim.bundled import templates
 from irsim.cli.output import console
-from irsim.common.screen import has_screen
 from irsim.diagnostics.errors import InputError
 from irsim.runs.files import RunError
 from irsim.runs.store import find_run
@@ -54,8 +51,8 @@ def studio(
         shown.print(
             f"It reads and writes scenarios in {made.files.root}; Ctrl-C ends it.", soft_wrap=True, highlight=False
         )
-        if not no_browser and ("BROWSER" in os.environ or has_screen()):
-            webbrowser.open(made.address)
+        if not no_browser:
+            made.show()
         while True:
             time.sleep(_LOOK_S)
     except KeyboardInterrupt:

@@ -11,6 +11,7 @@ from irsim.diagnostics.diagnostic import Path
 from irsim.diagnostics.errors import PlacementError
 from irsim.runs.replay.growing import GrowingRun
 from irsim.scenario.limits import Limits
+from irsim.scenario.model.lookup import at
 from irsim.scenario.read import read
 from irsim.scenario.resolve.resolved import ObjectRecord, random_parts
 from irsim.scenario.yaml.document import Document, load_text
@@ -18,7 +19,7 @@ from irsim.simulation.simulation import Simulation
 from irsim.validation.feasibility.check import feasibility_findings
 from irsim.validation.validate import report_of
 
-__all__ = ["check", "value_at"]
+__all__ = ["check"]
 
 
 def check(text: str, path: str | None, seed: int | None, limits: Limits) -> dict[str, Any]:
@@ -54,20 +55,9 @@ def check(text: str, path: str | None, seed: int | None, limits: Limits) -> dict
     }
 
 
-def value_at(document: Document, path: Path) -> Any:
-    """The value at a path as written; None if there is no such place."""
-    value = document.data
-    for part in path:
-        try:
-            value = value[part]
-        except (LookupError, TypeError):
-            return None
-    return value
-
-
 def _places(document: Document, record: ObjectRecord) -> dict[str, Any]:
     """Where an object is written, and what of it can be dragged: ``pose`` and ``goals``, by path, or ``why`` not."""
-    entry = value_at(document, record.path)
+    entry = at(document.data, record.path)
     place: dict[str, Any] = {"path": list(record.path), "lines": _lines(document, record.path)}
     if record.is_terrain or not isinstance(entry, Mapping):
         return place | {"why": "a key of the world makes it"}

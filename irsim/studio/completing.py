@@ -17,7 +17,7 @@ from irsim.scenario.limits import DEFAULT_LIMITS
 __all__ = ["complete"]
 
 _MARK = "irsim0cursor"
-_WORD = re.compile(r"[\w./-]*$")
+_WORD = re.compile(r"[\w./-]+$")
 _CLOSING = {"{": "}", "[": "]"}
 _MOST = 80
 
@@ -38,7 +38,7 @@ def complete(text: str, line: int, column: int) -> dict[str, Any]:
     if not 0 < line <= len(lines):
         return {"column": column, "options": []}
     row = lines[line - 1]
-    begun_at = _WORD.search(row[:column]).start()  # type: ignore[union-attr]  # it matches nothing, too
+    begun_at = len(_WORD.sub("", row[:column]))
     begun = row[begun_at:column].lower()
     for is_key, parsed in _parsed(lines, line - 1, begun_at, column):
         place = _marked(parsed, ())
@@ -114,13 +114,13 @@ def _chosen(root: Node, nodes: list[Node], written: dict[str, Any]) -> list[Node
 def _keys(path: Path, siblings: list[dict[str, Any]]) -> Iterator[tuple[str, dict[str, Any]]]:
     root = language_schema()
     written = siblings[-1] if siblings else {}
-    told = set(written)
+    offered = set(written)
     for option in _chosen(root, _nodes(path, siblings), written):
         name = component_name(option)
         for word, node in option["properties"].items():
-            if word in told:
+            if word in offered:
                 continue
-            told.add(word)
+            offered.add(word)
             about = key(root, word, node)
             facts = [about.unit or about.type, *([] if about.default is None else [f"default {about.default}"])]
             text = {"label": word, "apply": f"{word}: ", "detail": ", ".join(filter(None, facts)), "info": about.text}
@@ -129,18 +129,18 @@ def _keys(path: Path, siblings: list[dict[str, Any]]) -> Iterator[tuple[str, dic
 
 
 def _values(path: Path, siblings: list[dict[str, Any]]) -> Iterator[tuple[str, dict[str, Any]]]:
-    root, told = language_schema(), set[str]()
+    root, offered = language_schema(), set[str]()
     if path and path[-1] == "name":
         for option in [option for node in _nodes(path[:-1], siblings) for option in mappings(root, node)]:
-            if (name := component_name(option)) and name not in told:
-                told.add(name)
+            if (name := component_name(option)) and name not in offered:
+                offered.add(name)
                 yield _topic(*path[:-1], name), _component(name, name, option)
         return
     for node in _nodes(path, siblings):
         for option in mappings(root, node):
             name = component_name(option)
-            if name and name not in told:
-                told.add(name)
+            if name and name not in offered:
+                offered.add(name)
                 yield _topic(*path, name), _component(name, f"{{name: {name}}}", option)
         for option in alternatives(root, node):
             values = [option["const"]] if "const" in option else list(option.get("enum", []))
@@ -148,8 +148,8 @@ def _values(path: Path, siblings: list[dict[str, Any]]) -> Iterator[tuple[str, d
                 values += [True, False]
             for value in values:
                 label = str(value).lower() if isinstance(value, bool) else str(value)
-                if label not in told:
-                    told.add(label)
+                if label not in offered:
+                    offered.add(label)
                     yield label, {"label": label, "apply": label, "detail": "", "info": "", "kind": "enum"}
 
 

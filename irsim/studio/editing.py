@@ -8,9 +8,9 @@ from typing import Any, get_args
 
 from irsim.diagnostics.diagnostic import Action, Edit, Path
 from irsim.scenario.limits import Limits
+from irsim.scenario.model.lookup import at
 from irsim.scenario.yaml.document import Document, load_text
 from irsim.scenario.yaml.rewrite import rewrite
-from irsim.studio.checking import value_at
 
 __all__ = ["NotEdited", "edit"]
 
@@ -53,7 +53,7 @@ def edit(text: str, edits: Sequence[Mapping[str, Any]], limits: Limits) -> str:
 
 def _steps(document: Document, action: str, path: Path, value: Any) -> list[Edit]:
     """The edits of the text that make one edit of the page."""
-    written = value_at(document, path)
+    written = at(document.data, path)
     single = not isinstance(path[-1], int)
     if action == "numbers":
         return _numbers(document, path, written, value)
@@ -76,7 +76,7 @@ def _copied(document: Document, path: Path, written: Any) -> list[Edit]:
     steps = [Edit("insert", copy, written) if single else Edit("duplicate", path)]
     entry = written if isinstance(written, Mapping) else {}
     if isinstance(name := entry.get("name"), str):
-        others = {one for role in ("robot", "obstacle") for one in _names(value_at(document, (role,)))}
+        others = {one for role in ("robot", "obstacle") for one in _names(at(document.data, (role,)))}
         stem = name.rstrip("0123456789").rstrip("_") or name
         steps.append(
             Edit("replace", (*copy, "name"), next(f"{stem}_{k}" for k in count(2) if f"{stem}_{k}" not in others))
@@ -95,9 +95,9 @@ def _names(entries: Any) -> list[Any]:
 def _numbers(document: Document, path: Path, written: Any, numbers: Sequence[float]) -> list[Edit]:
     """Edits that replace the numbers of a list that differ; all of it if it is shorter, or not there."""
     if written is None:
-        above = value_at(document, path[:-1])
-        action = "replace" if isinstance(above, Mapping) and path[-1] in above else "add"
-        return [Edit(action, path, list(numbers))]  # type: ignore[arg-type]  # it is one of them
+        above = at(document.data, path[:-1])
+        action: Action = "replace" if isinstance(above, Mapping) and path[-1] in above else "add"
+        return [Edit(action, path, list(numbers))]
     if not isinstance(written, list) or not all(_is_number(item) for item in written):
         raise NotEdited("it is not written as a list of numbers")
     if len(written) < len(_PLACE):

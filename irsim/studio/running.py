@@ -16,6 +16,7 @@ from irsim.results.run import RunResult
 from irsim.runs.reading import open_run
 from irsim.runs.replay.data import pack_run
 from irsim.runs.replay.page import page
+from irsim.runs.replay.rows import ending_of
 from irsim.scenario.limits import Limits
 from irsim.studio.feed import END, RESULT, Feed, Follower
 
@@ -78,7 +79,5 @@ def _run_one(job: Mapping[str, Any], limits: Limits, put: Callable[[int, bytes],
         watched=follow,
     )
     followers[0].flush(last=True)
-    reason = None if result.reason is None else clean(result.reason, 2000)
-    ending = {"outcome": result.outcome, "status": "finished", "summary": clean(result.summary, 1000), "reason": reason}
-    put(END, json.dumps(ending).encode())
+    put(END, json.dumps({"status": "finished", **ending_of(result)}).encode())
     return result

@@ -6,6 +6,7 @@ import asyncio
 import os
 import socket
 import threading
+import webbrowser
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,7 @@ from starlette.routing import Route
 
 from irsim.common.connections import server_of
 from irsim.common.records import ContentError, read_json
+from irsim.common.screen import has_screen
 from irsim.diagnostics.errors import InputError
 from irsim.studio.access import Access
 from irsim.studio.guard import Guard
@@ -96,6 +98,11 @@ class Server:
     def address(self) -> str:
         """Address of the page with the token, which browsers keep to themselves: it stands after the ``#``."""
         return f"http://{_HOST}:{self.port}/#{self.access.token}"
+
+    def show(self) -> None:
+        """Open the page in a browser without waiting for it, if there is a screen or ``BROWSER`` names a browser."""
+        if "BROWSER" in os.environ or has_screen():
+            threading.Thread(target=webbrowser.open, args=[self.address], daemon=True).start()
 
     def close(self) -> None:
         """End all connections."""

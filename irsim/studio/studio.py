@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -82,6 +82,10 @@ class Studio:
         self._server = Server(port, routes, texts, opened=("/web/",))
         self.address = self._server.address
 
+    def show(self) -> None:
+        """Open the page in a browser, if there is one."""
+        self._server.show()
+
     def close(self) -> None:
         """End the server and the processes."""
         if self._run is not None:
@@ -149,14 +153,19 @@ async def _answered(task: Callable[[dict[str, Any]], Any], request: Request) -> 
         return JSONResponse({"why": str(error)})
 
 
+@cache
+def _parts() -> dict[str, Path]:
+    """Address below ``/web/`` -> file, of the modules and style sheets; the studio's go before the player's."""
+    files = {file.relative_to(folder).as_posix(): file for folder in (PLAYER, _WEB) for file in folder.rglob("*")}
+    return {name: file for name, file in files.items() if file.suffix in _KINDS}
+
+
 async def _part(request: Request) -> Response:
     """A module or a style sheet of the page."""
     name: str = request.path_params["name"]
     if name == "theme.css":
         return Response(css_variables(), media_type="text/css")
-    parts = [*_WEB.rglob("*"), *PLAYER.glob("*")]
-    file = next((one for one in parts if name in (one.name, f"{one.parent.name}/{one.name}")), None)
-    if file is None or file.suffix not in _KINDS:
+    if (file := _parts().get(name)) is None:
         raise Refused(404, "there is nothing at this address")
     return Response(file.read_bytes(), media_type=_KINDS[file.suffix])
 

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
-import threading
 import time
-import webbrowser
 from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from irsim.common.screen import has_screen
-from irsim.common.text import clean
+from irsim.runs.replay.rows import ending_of
 from irsim.studio.feed import END, Feed, Follower
 from irsim.studio.live import live_server
 
@@ -56,18 +52,16 @@ class Window:
         facts = {} if self._speed is None else {"speed": self._speed}
         self._follower = Follower(self._feed, simulation, horizon, **facts)
         self._server = live_server(self._port, self._feed)
-        address = self._server.address
-        self._say(f"watch: {address}")
-        if self._browser and ("BROWSER" in os.environ or has_screen()):
-            threading.Thread(target=webbrowser.open, args=[address], daemon=True).start()
+        self._say(f"watch: {self._server.address}")
+        if self._browser:
+            self._server.show()
         return self._follower
 
     def end(self, result: RunResult) -> None:
         """Show how the run ended."""
         assert self._follower is not None
         self._follower.flush(last=True)
-        reason = None if result.reason is None else clean(result.reason, 2000)
-        self._put_end(outcome=result.outcome, status="finished", summary=clean(result.summary, 1000), reason=reason)
+        self._put_end(status="finished", **ending_of(result))
 
     def _put_end(self, **ending: str | None) -> None:
         self._ended = True

@@ -57,4 +57,4 @@ class FittedOptions(BehaviorOptions):
     @model_validator(mode="before")
     @classmethod
     def _take_fitted(cls, given: Any) -> Any:
-        return with_preset(given, "people", FITTED[str(cls.model_fields["name"].default)])
+        return with_preset(given, "people", FITTED[str(cls.model_fields["name"].default)], dict)

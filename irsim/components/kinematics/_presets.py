@@ -31,7 +31,7 @@ class Preset:
 
 def filled(data: Any, key: str, usual: str, presets: Mapping[str, Preset]) -> Any:
     """The keys of a drive; keys that are missing or null have the values of its preset."""
-    return with_preset(data, key, {name: one.values for name, one in presets.items()}, usual=usual, nulls=True)
+    return with_preset(data, key, presets, lambda preset: preset.values, usual=usual, nulls=True)
 
 
 def _tracks(track: float, spread: float) -> dict[str, float]:

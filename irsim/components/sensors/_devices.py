@@ -62,11 +62,10 @@ class Device:
 
 def with_card(given: Any, cards: Mapping[str, Device]) -> Any:
     """Return the keys of a sensor and of the card that its ``device`` names; keys beside it win."""
-    presets = {name: card.options() for name, card in cards.items()}
-    full = with_preset(given, "device", presets)
+    full = with_preset(given, "device", cards, Device.options)
     if full is given or not isinstance(full.get("realism"), Mapping):
         return full
-    return {**full, "realism": {**presets[full["device"]].get("realism", {}), **full["realism"]}}
+    return {**full, "realism": {**cards[full["device"]].options().get("realism", {}), **full["realism"]}}
 
 
 def _device(title: str, *parts: tuple[Source, dict[str, Any]]) -> Device:

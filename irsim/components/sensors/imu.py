@@ -87,7 +87,7 @@ class Imu(GaugeOptions):
     @model_validator(mode="before")
     @classmethod
     def _take_device(cls, given: Any) -> Any:
-        return with_preset(given, "device", DEVICES)
+        return with_preset(given, "device", DEVICES, dict)
 
     def resolved(self, zones: list[str]) -> dict[str, Any]:
         """Fields of the kernel that are not as they are written: missing limits."""

@@ -20,6 +20,7 @@ from irsim.runs.replay.rows import (
     add_flags,
     add_goals,
     add_poses,
+    ending_of,
     flags_of,
     page_event,
     page_head,
@@ -218,8 +219,7 @@ def _ending(run: Run) -> dict[str, Any]:
     result = run.result
     if result is None:
         return {"outcome": None, "summary": f"This run is {run.status}.", "reason": None}
-    reason = None if result.reason is None else clean(result.reason, 2000)
-    return {"outcome": result.outcome, "summary": clean(result.summary, 1000), "reason": reason}
+    return ending_of(result)
 
 
 def _events(recorded: Sequence[Event], trace: Trace, objects: list[dict[str, Any]]) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from irsim.simulation.events import BETWEEN_STEPS, Event
 from irsim.simulation.trace import Trace
 
 if TYPE_CHECKING:
+    from irsim.results.run import RunResult
     from irsim.simulation.simulation import Simulation
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "add_flags",
     "add_goals",
     "add_poses",
+    "ending_of",
     "flags_of",
     "page_event",
     "page_head",
@@ -179,6 +181,12 @@ def add_flags(columns: Columns, flags: Integers, before: Integers | None = None)
     columns.add("flag_row", row[keep] - skipped, 1)
     columns.add("flag_object", of[keep], 1)
     columns.add("flags", flags[row, of][keep])
+
+
+def ending_of(result: RunResult) -> dict[str, str | None]:
+    """The words of the page about how a run has ended: ``outcome``, ``summary`` and ``reason``."""
+    reason = None if result.reason is None else clean(result.reason, 2000)
+    return {"outcome": result.outcome, "summary": clean(result.summary, 1000), "reason": reason}
 
 
 def page_event(event: Event, number: Mapping[str, int]) -> list[Any]:

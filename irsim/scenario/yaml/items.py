@@ -109,8 +109,8 @@ def _insert_in_line(text: str, items: yaml.SequenceNode, index: int, item: str) 
 def _put(text: str, items: yaml.SequenceNode, index: int, item: str, column: int) -> str:
     """Put the lines of an item, which begin with its dash, before the item of that number."""
     newline = "\r\n" if "\r\n" in text else "\n"
-    dash = _dash(text, items, index if index < len(items.value) else index - 1)
     if index == 0:
+        dash = _dash(text, items, 0)
         return f"{text[:dash]}{item}{newline}{' ' * column}{text[dash:]}"
     before = items.value[index - 1]
     place = _line_end(text, max(_dash(text, items, index - 1), end_of(before)))
@@ -170,7 +170,7 @@ def _code_end(text: str, place: int) -> int:
 
 
 def _without_anchors(text: str, start: int, end: int) -> str:
-    """A copy of a part of a text that names no value anew: the part itself has the names."""
+    """A part of a text without its anchors, for a copy: the part itself keeps them."""
     part = text[start:end]
     for token in reversed(_tokens(text, yaml.AnchorToken, start, end)):
         part = part[: token.start_mark.index - start] + part[token.end_mark.index - start :].lstrip(" ")

@@ -99,20 +99,20 @@ def _insert(text: str, root: yaml.Node | None, edit: Edit) -> str:
             return _insert(new, yaml.compose(new, Loader=LOADER), edit)
         if pair is not None and not isinstance(pair[1], yaml.SequenceNode):
             if pair[1].tag == "tag:yaml.org,2002:null":
-                column = pair[0].start_mark.column
-                item = f"\n{' ' * (column + 2)}- {yaml_flow(edit.value)}"
-                end = text.index(":", pair[0].end_mark.index) + 1
-                return (
-                    text[:end]
-                    + (f" [{yaml_flow(edit.value)}]" if holder.flow_style else item)
-                    + text[end_of(pair[1]) :]
-                )
+                return _first_item(text, *pair, edit.value, in_line=bool(holder.flow_style))
             text = listed(text, *pair)
             root = yaml.compose(text, Loader=LOADER)
     items = node_at(root, edit.path[:-1])
     if not isinstance(items, yaml.SequenceNode) or not isinstance(index, int):
         raise _NotPossible
     return insert_item(text, items, index, edit.value, yaml_flow)
+
+
+def _first_item(text: str, key: yaml.Node, nothing: yaml.Node, value: Any, *, in_line: bool) -> str:
+    """The text in which a key without a value has a list of one value."""
+    end = text.index(":", key.end_mark.index) + 1
+    item = f" [{yaml_flow(value)}]" if in_line else f"\n{' ' * (key.start_mark.column + 2)}- {yaml_flow(value)}"
+    return text[:end] + item + text[end_of(nothing) :]
 
 
 def _replace(text: str, node: yaml.Node, value: Any, key: yaml.Node | None = None) -> str:

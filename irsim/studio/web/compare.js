@@ -30,7 +30,6 @@ export function endComparison() {
 
 /** Show runs: each has its name, its blocks, how it ended, and its result. The longest one gives the clock. */
 export async function compare(runs) {
-  const { theme } = player.colors;
   const longest = runs.reduce((one, other) => (other.result.sim_time > one.result.sim_time ? other : one));
   await show(longest.blocks[0], true);
   for (const block of longest.blocks.slice(1)) await extend(block);
@@ -41,7 +40,7 @@ export async function compare(runs) {
     run.growing = false;
     run.head.run_id = name; // what a drawing keeps belongs to one run
     const canvas = element("canvas", { title: result.reason ?? result.summary });
-    return { run, canvas, drawing: makeDrawing(), camera: makeCamera(run.head.world), name, result, theme };
+    return { run, canvas, drawing: makeDrawing(), camera: makeCamera(run.head.world), name, result };
   }));
   $("pictures").replaceChildren(...views.map(({ name, canvas, result }) => element("figure", {},
     element("figcaption", {}, `${name} `, element("b", { className: result.outcome, textContent: result.outcome })), canvas)));

@@ -137,7 +137,7 @@ function stop() {
   $("compare").textContent = "Compare";
 }
 
-const told = (content) => JSON.parse(new TextDecoder().decode(content));
+const parsed = (content) => JSON.parse(new TextDecoder().decode(content));
 
 /** Simulate the text; `take(kind, content)` gets the frames. */
 async function simulate(button, more, take) {
@@ -166,8 +166,8 @@ async function simulate(button, more, take) {
 const run = () => simulate($("run"), {}, async (kind, content) => {
   if (kind === BEGIN) await show(content, true);
   else if (kind === ROWS) await extend(content);
-  else if (kind === END) finish(told(content));
-  else if (kind === RESULT) sayResult(told(content));
+  else if (kind === END) finish(parsed(content));
+  else if (kind === RESULT) sayResult(parsed(content));
 });
 
 function sayResult({ summary, reason, outcome, decisive_step: step }) {
@@ -196,8 +196,8 @@ async function runCompared() {
     const one = { name: name || "as written", blocks: [] };
     await simulate($("compare"), { policy: name || null }, (kind, content) => {
       if (kind === BEGIN || kind === ROWS) one.blocks.push(content);
-      else if (kind === END) one.ending = told(content);
-      else if (kind === RESULT) one.result = told(content);
+      else if (kind === END) one.ending = parsed(content);
+      else if (kind === RESULT) one.result = parsed(content);
     });
     if (!one.result) return; // it failed, or was stopped
     runs.push(one);
@@ -232,9 +232,9 @@ function runMany() {
   return simulate($("many"), { seeds: Array.from({ length: MANY }, (_, k) => k) }, async (kind, content) => {
     if (kind === BEGIN) one = { blocks: [content] };
     else if (kind === ROWS) one.blocks.push(content);
-    else if (kind === END) one.ending = told(content);
+    else if (kind === END) one.ending = parsed(content);
     else if (kind === RESULT) {
-      one.result = told(content);
+      one.result = parsed(content);
       outcomes.set(one.result.outcome, (outcomes.get(one.result.outcome) ?? 0) + 1);
       await addToStrip(one);
       state([...outcomes].map(([outcome, count]) => `${count} × ${outcome}`).join(", "), outcomes.size === 1 && outcomes.has("success") ? "good" : "");
